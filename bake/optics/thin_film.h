@@ -1,0 +1,40 @@
+// One thin film between two half-spaces: Airy reflectance and transmittance of unpolarised light.
+//
+// With s = sin(theta_0), c_j the cosine in medium j, k = 2 pi n1 d / lambda and the admittances
+// q_j = n_j c_j (s-polarised) or c_j / n_j (p-polarised), the amplitude of the infinite sum of reflections
+//     r = (r01 + r12 e^{i phi}) / (1 + r01 r12 e^{i phi}),   phi = 2 k c_1
+// multiplied out with its denominators is (A - iB) / (C - iD),
+//     A, C = (q0 -+ q2) cos(k c1),   B, D = (q0 q2 / q1 -+ q1) sin(k c1).
+// Written so, nothing is singular at c1 = 0 and every quantity stays real when the wave is evanescent inside
+// the film (cos, sin become cosh, sinh: frustrated total reflection). Source: Born and Wolf, sec. 1.6.
+// The transmittance 4 q0 q2 / (C^2 + D^2) has no cancellation, so both powers keep their relative precision.
+#pragma once
+
+#include "sunbeam/core/vec.h"
+
+namespace sunbeam {
+
+struct ThinFilm {
+  double exterior_ior;  // n0, of the medium the light comes from
+  double film_ior;      // n1
+  double base_ior;      // n2, of the medium beyond
+  double thickness_nm;  // d0 >= 0
+
+  ThinFilm reversed() const { return {base_ior, film_ior, exterior_ior, thickness_nm}; }
+};
+
+struct FilmPower {
+  Rgb reflectance;    // R in [0, 1]
+  Rgb transmittance;  // 1 - R: the film absorbs nothing
+};
+
+// Powers at the cosine of the angle in the exterior medium (0 <= cos_exterior <= 1), for three vacuum
+// wavelengths in nm at once. R = 1 where exterior_ior * sin >= base_ior.
+FilmPower airy(const ThinFilm& film, double cos_exterior, const Rgb& wavelengths_nm);
+
+// Squared cosine on the far side by Snell's law; negative under total reflection.
+inline double refracted_cosine_squared(double ior_from, double ior_to, double cos_from) {
+  return 1 - square(ior_from / ior_to) * (1 - square(cos_from));
+}
+
+}  // namespace sunbeam

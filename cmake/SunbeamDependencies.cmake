@@ -1,0 +1,32 @@
+# Third-party libraries, all from Debian 12 (see cmake/setup.sh for the package names).
+include(GNUInstallDirs)
+
+find_package(Imath 3.1 CONFIG REQUIRED)
+find_package(OpenEXR 3.1 CONFIG REQUIRED)
+
+if(SUNBEAM_BUILD_TRACER OR SUNBEAM_BUILD_BAKE)
+  find_package(fmt 9.0 CONFIG REQUIRED)
+  find_package(tomlplusplus 3.3 CONFIG REQUIRED)
+  find_package(TBB 2021.8 CONFIG REQUIRED COMPONENTS tbb)
+  find_package(embree 3.13 CONFIG REQUIRED)
+  find_package(tinyobjloader CONFIG REQUIRED)
+  find_package(PNG REQUIRED)
+endif()
+
+if(SUNBEAM_BUILD_VDB)
+  block()  # FindOpenVDB leaks BUILD_SHARED_LIBS, and its folder shadows FindTBB and FindOpenEXR
+    list(PREPEND CMAKE_MODULE_PATH "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")
+    find_package(OpenVDB 10.0 MODULE REQUIRED COMPONENTS openvdb)
+  endblock()
+endif()
+
+if(SUNBEAM_BUILD_BAKE)
+  find_package(CLI11 2.1 CONFIG REQUIRED)
+  find_package(nlohmann_json 3.11 CONFIG REQUIRED)
+endif()
+
+if(SUNBEAM_BUILD_TESTS)
+  find_package(GTest 1.12 CONFIG REQUIRED)
+  find_package(benchmark 1.7 CONFIG REQUIRED)
+  find_package(Python3 REQUIRED COMPONENTS Interpreter)
+endif()

@@ -1,0 +1,261 @@
+#include "runtime/config/config.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "sunbeam/core/error.h"
+
+namespace sunbeam {
+
+struct ConfigTable::Node {
+  toml::table values;
+  std::string file;
+  std::string path;  // dotted path of this table, "" at the top
+  std::set<std::string, std::less<>> asked;
+  std::vector<std::shared_ptr<Node>> children;
+
+  std::string full_key(std::string_view key) const {
+    return path.empty() ? std::string(key) : path + "." + std::string(key);
+  }
+
+  const toml::node* ask(std::string_view key) {
+    asked.emplace(key);
+    return values.get(key);
+  }
+
+  std::shared_ptr<Node> child(const toml::table& table, std::string child_path) {
+    children.push_back(std::make_shared<Node>(Node{table, file, std::move(child_path), {}, {}}));
+    return children.back();
+  }
+};
+
+namespace {
+
+std::string kind_of(const toml::node& node) {
+  std::ostringstream text;
+  text << node.type();
+  return text.str();
+}
+
+std::string range_text(const Range& allowed) {
+  return fmt::format("{:g} to {:g}", allowed.low, allowed.high);
+}
+
+// The value of an override: TOML if it parses as such, else a bare string.
+toml::table parse_value(const std::string& value) {
+  try {
+    return toml::parse("value = " + value);
+  } catch (const toml::parse_error&) {
+    return toml::table{{"value", value}};
+  }
+}
+
+void apply_override(toml::table& root, const std::string& text, const std::string& file) {
+  const auto equals = text.find('=');
+  const auto dot = text.find('.');
+  if (equals == std::string::npos || dot == std::string::npos || dot == 0 || dot > equals)
+    throw Error(fmt::format("{}: override '{}': expected section.key=value", file, text));
+  toml::table* table = &root;
+  std::string key = text.substr(0, equals);
+  for (auto at = key.find('.'); at != std::string::npos; at = key.find('.')) {
+    const std::string section = key.substr(0, at);
+    if (!table->contains(section)) table->insert(section, toml::table{});
+    table = (*table)[section].as_table();
+    if (!table) throw Error(fmt::format("{}: override '{}': '{}' is not a section", file, text, section));
+    key = key.substr(at + 1);
+  }
+  parse_value(text.substr(equals + 1)).get("value")->visit([&](auto&& node) {
+    table->insert_or_assign(key, node);
+  });
+}
+
+}  // namespace
+
+std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
+  const auto distance = [&](const std::string& other) {
+    std::vector<std::size_t> row(other.size() + 1);
+    for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= word.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i;
+      for (std::size_t j = 1; j < row.size(); ++j) {
+        const std::size_t substitute = diagonal + (word[i - 1] != other[j - 1]);
+        diagonal = row[j];
+        row[j] = std::min({substitute, row[j] + 1, row[j - 1] + 1});
+      }
+    }
+    return row.back();
+  };
+  std::string best;
+  std::size_t best_distance = std::string::npos;
+  for (const auto& candidate : candidates) {
+    const std::size_t d = distance(candidate);
+    if (d < best_distance) best = candidate, best_distance = d;
+  }
+  return best;
+}
+
+ConfigTable ConfigTable::load(const std::string& path, const std::vector<std::string>& overrides) {
+  std::error_code ignored;
+  std::ifstream in(path, std::ios::binary);
+  if (!in || std::filesystem::is_directory(path, ignored)) throw Error(path + ": cannot open the file");
+  std::ostringstream text;
+  text << in.rdbuf();
+  return parse(text.str(), path, overrides);
+}
+
+ConfigTable ConfigTable::parse(const std::string& text, const std::string& name,
+                               const std::vector<std::string>& overrides) {
+  auto node = std::make_shared<Node>();
+  node->file = name;
+  try {
+    node->values = toml::parse(text, name);
+  } catch (const toml::parse_error& error) {
+    throw Error(
+        fmt::format("{}:{}: not valid TOML: {}", name, error.source().begin.line, error.description()));
+  }
+  for (const auto& override_text : overrides) apply_override(node->values, override_text, name);
+  return ConfigTable(node);
+}
+
+void ConfigTable::fail(std::string_view key, const std::string& message) const {
+  const toml::node* node = node_->values.get(key);
+  const auto line = node ? node->source().begin.line : node_->values.source().begin.line;
+  const std::string where = line ? fmt::format("{}:{}", node_->file, line) : node_->file;
+  throw Error(fmt::format("{}: key '{}': {}", where, node_->full_key(key), message));
+}
+
+bool ConfigTable::has(std::string_view key) const { return node_->ask(key) != nullptr; }
+bool ConfigTable::is_number(std::string_view key) const { return has(key) && node_->ask(key)->is_number(); }
+bool ConfigTable::is_list(std::string_view key) const { return has(key) && node_->ask(key)->is_array(); }
+bool ConfigTable::is_table(std::string_view key) const { return has(key) && node_->ask(key)->is_table(); }
+
+double ConfigTable::number(std::string_view key, const Range& allowed, std::optional<double> fallback) const {
+  const toml::node* node = node_->ask(key);
+  if (!node && fallback) return *fallback;
+  if (!node) fail(key, fmt::format("is missing; allowed: a number, {}", range_text(allowed)));
+  const auto value = node->value<double>();
+  if (!node->is_number() || !value)
+    fail(key, fmt::format("found a {}; allowed: a number, {}", kind_of(*node), range_text(allowed)));
+  if (!std::isfinite(*value) || *value < allowed.low || *value > allowed.high)
+    fail(key, fmt::format("found {:g}; allowed: {}", *value, range_text(allowed)));
+  return *value;
+}
+
+int ConfigTable::integer(std::string_view key, int low, int high, std::optional<int> fallback) const {
+  const double value = number(key, {static_cast<double>(low), static_cast<double>(high)}, fallback);
+  if (value != std::floor(value))
+    fail(key, fmt::format("found {:g}; allowed: a whole number, {} to {}", value, low, high));
+  return static_cast<int>(value);
+}
+
+bool ConfigTable::boolean(std::string_view key, bool fallback) const {
+  const toml::node* node = node_->ask(key);
+  if (!node) return fallback;
+  if (!node->is_boolean()) fail(key, fmt::format("found a {}; allowed: true or false", kind_of(*node)));
+  return *node->value<bool>();
+}
+
+std::string ConfigTable::string(std::string_view key, std::optional<std::string> fallback) const {
+  const toml::node* node = node_->ask(key);
+  if (!node && fallback) return *fallback;
+  if (!node) fail(key, "is missing; allowed: a string");
+  if (!node->is_string()) fail(key, fmt::format("found a {}; allowed: a string", kind_of(*node)));
+  return *node->value<std::string>();
+}
+
+int ConfigTable::choice(std::string_view key, const std::vector<std::string>& allowed,
+                        std::optional<int> fallback) const {
+  if (!has(key) && fallback) return *fallback;
+  const std::string value = string(key);
+  const auto at = std::find(allowed.begin(), allowed.end(), value);
+  if (at == allowed.end())
+    fail(key, fmt::format("found \"{}\"; allowed: \"{}\"", value, fmt::join(allowed, "\", \"")));
+  return static_cast<int>(at - allowed.begin());
+}
+
+std::vector<double> ConfigTable::numbers(std::string_view key, const Range& allowed) const {
+  const toml::node* node = node_->ask(key);
+  if (!node || !node->is_array())
+    fail(key, fmt::format("allowed: a list of numbers, each {}", range_text(allowed)));
+  std::vector<double> result;
+  for (const auto& element : *node->as_array()) {
+    const auto value = element.value<double>();
+    if (!element.is_number() || !value || !std::isfinite(*value) || *value < allowed.low ||
+        *value > allowed.high)
+      fail(key,
+           fmt::format("element {} is {}; allowed: numbers, each {}", result.size() + 1,
+                       value ? fmt::format("{:g}", *value) : "a " + kind_of(element), range_text(allowed)));
+    result.push_back(*value);
+  }
+  return result;
+}
+
+Vec3 ConfigTable::vec3(std::string_view key, std::optional<Vec3> fallback) const {
+  if (!has(key) && fallback) return *fallback;
+  const auto values = numbers(key, {});
+  if (values.size() != 3) fail(key, fmt::format("found {} numbers; allowed: 3", values.size()));
+  return {values[0], values[1], values[2]};
+}
+
+Rgb ConfigTable::rgb(std::string_view key, const Range& allowed, std::optional<Rgb> fallback) const {
+  if (!has(key) && fallback) return *fallback;
+  if (!is_list(key)) return Rgb(number(key, allowed));
+  const auto values = numbers(key, allowed);
+  if (values.size() != 3)
+    fail(key, fmt::format("found {} numbers; allowed: one number or a list of 3", values.size()));
+  return {values[0], values[1], values[2]};
+}
+
+ConfigTable ConfigTable::table(std::string_view key) const {
+  const toml::node* node = node_->ask(key);
+  if (node && !node->is_table()) fail(key, fmt::format("found a {}; allowed: a section", kind_of(*node)));
+  return ConfigTable(node_->child(node ? *node->as_table() : toml::table{}, node_->full_key(key)));
+}
+
+std::vector<ConfigTable> ConfigTable::tables(std::string_view key) const {
+  const toml::node* node = node_->ask(key);
+  std::vector<ConfigTable> result;
+  if (!node) return result;
+  if (!node->is_array()) fail(key, fmt::format("found a {}; allowed: [[{}]] entries", kind_of(*node), key));
+  for (const auto& element : *node->as_array()) {
+    if (!element.is_table())
+      fail(key, fmt::format("entry {} is a {}; allowed: a table", result.size() + 1, kind_of(element)));
+    result.push_back(ConfigTable(
+        node_->child(*element.as_table(), fmt::format("{}[{}]", node_->full_key(key), result.size()))));
+  }
+  return result;
+}
+
+void ConfigTable::finish() const {
+  for (const auto& [key, value] : node_->values) {
+    if (node_->asked.count(key.str())) continue;
+    const std::string suggestion = nearest(key.str(), {node_->asked.begin(), node_->asked.end()});
+    fail(key.str(), suggestion.empty()
+                        ? "is not known"
+                        : fmt::format("is not known; the nearest valid key is '{}'", suggestion));
+  }
+  for (const auto& child : node_->children) ConfigTable(child).finish();
+}
+
+const std::string& ConfigTable::file() const { return node_->file; }
+
+std::string ConfigTable::resolve(const std::string& relative_path) const {
+  return (std::filesystem::path(node_->file).parent_path() / relative_path).lexically_normal().string();
+}
+
+std::string ConfigTable::canonical_text() const {
+  std::ostringstream text;
+  text << node_->values;
+  return text.str();
+}
+
+}  // namespace sunbeam

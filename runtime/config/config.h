@@ -1,0 +1,74 @@
+// Reading TOML files (recipes, scenes) with errors a person can act on.
+//
+// A ConfigTable remembers every key it was asked for. finish() refuses any key in the file that was never
+// asked for and names the nearest one that was, so a typo cannot pass silently.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sunbeam/core/vec.h"
+
+namespace sunbeam {
+
+// Closed interval of allowed values.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+};
+
+class ConfigTable {
+ public:
+  // Parses a file; `overrides` are "section.key=value" strings, the value in TOML syntax or a bare string.
+  static ConfigTable load(const std::string& path, const std::vector<std::string>& overrides = {});
+  static ConfigTable parse(const std::string& text, const std::string& name,
+                           const std::vector<std::string>& overrides = {});
+
+  bool has(std::string_view key) const;
+  bool is_number(std::string_view key) const;
+  bool is_list(std::string_view key) const;
+  bool is_table(std::string_view key) const;
+
+  // Each throws Error when the key is missing and no fallback is given, or when type or range are wrong.
+  double number(std::string_view key, const Range& allowed, std::optional<double> fallback = {}) const;
+  int integer(std::string_view key, int low, int high, std::optional<int> fallback = {}) const;
+  bool boolean(std::string_view key, bool fallback) const;
+  std::string string(std::string_view key, std::optional<std::string> fallback = {}) const;
+  // One of `allowed`; returns its index.
+  int choice(std::string_view key, const std::vector<std::string>& allowed,
+             std::optional<int> fallback = {}) const;
+  std::vector<double> numbers(std::string_view key, const Range& allowed) const;
+  Vec3 vec3(std::string_view key, std::optional<Vec3> fallback = {}) const;
+  // One number (grey) or a list of three.
+  Rgb rgb(std::string_view key, const Range& allowed, std::optional<Rgb> fallback = {}) const;
+
+  // A missing [section] is an empty table; a missing [[list]] has no entries.
+  ConfigTable table(std::string_view key) const;
+  std::vector<ConfigTable> tables(std::string_view key) const;
+
+  // Refuses keys never asked for, here and in every sub-table handed out.
+  void finish() const;
+
+  // Throws Error: "FILE:LINE: key 'a.b': MESSAGE".
+  [[noreturn]] void fail(std::string_view key, const std::string& message) const;
+
+  const std::string& file() const;
+  // The folder of the file, for paths that are relative to it.
+  std::string resolve(const std::string& relative_path) const;
+  // The whole document, overrides applied, as canonical TOML text.
+  std::string canonical_text() const;
+
+ private:
+  struct Node;
+  explicit ConfigTable(std::shared_ptr<Node> node) : node_(std::move(node)) {}
+  std::shared_ptr<Node> node_;
+};
+
+// The candidate with the smallest edit distance to `word`.
+std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
+
+}  // namespace sunbeam

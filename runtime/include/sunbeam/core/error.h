@@ -1,0 +1,13 @@
+// The one exception of Sunbeam. The message is complete: file, key or line, what was found, what is allowed.
+#pragma once
+
+#include <stdexcept>
+
+namespace sunbeam {
+
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace sunbeam

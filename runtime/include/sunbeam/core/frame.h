@@ -1,0 +1,27 @@
+// The local shading frame: x = tangent, y = bitangent, z = shading normal. BSDFs see local directions only.
+#pragma once
+
+#include "sunbeam/core/vec.h"
+
+namespace sunbeam {
+
+struct Frame {
+  Vec3 tangent, bitangent, normal;
+
+  // Any right-handed frame around a unit `n` (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
+  static Frame from_normal(const Vec3& n) {
+    const double sign = std::copysign(1.0, n.z);
+    const double a = -1 / (sign + n.z);
+    const double b = n.x * n.y * a;
+    return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
+  }
+
+  Vec3 to_local(const Vec3& world) const {
+    return {dot(world, tangent), dot(world, bitangent), dot(world, normal)};
+  }
+  Vec3 to_world(const Vec3& local) const {
+    return local.x * tangent + local.y * bitangent + local.z * normal;
+  }
+};
+
+}  // namespace sunbeam

@@ -1,0 +1,66 @@
+// The parameters of the layered skin: exterior | thin film | pigment layer | diffuse base.
+//
+// Keys of recipes and tables are the member names. Lengths are in nm, absorption in 1/nm, the rest has no
+// unit.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sunbeam/core/vec.h"
+
+namespace sunbeam {
+
+// How light passes the film: "straight" without bending (one reflectance serves both sides), or "refract"
+// from exterior to base medium, with the reversed film and total internal reflection seen from below.
+enum class Transmission { straight, refract };
+
+// How the pigment attenuates between entering and leaving, tau = absorption_per_nm * pigment_thickness_nm:
+// "product" exp(-tau / (cos_i cos_o)), "sum" exp(-tau (1/cos_i + 1/cos_o)); cosines below the film.
+enum class AbsorptionPath { product, sum };
+
+struct Material {
+  Transmission transmission = Transmission::refract;
+  AbsorptionPath absorption_path = AbsorptionPath::sum;
+  double film_thickness_nm = 300;   // d0, 0 to 100000
+  double exterior_ior = 1;          // n0, 1 to 5
+  double film_ior = 1.56;           // n1, 1 to 5
+  double base_ior = 1.5;            // n2, 1 to 5
+  double absorption_per_nm = 0.1;   // sigma_a of the pigment, 0 to 1000
+  double pigment_thickness_nm = 2;  // d1, 0 to 1e6
+  Rgb albedo = Rgb(0.3);            // kd of the diffuse base, each 0 to 1
+  double roughness = 0.1;           // GGX alpha of the film, 0 (smooth) to 1
+
+  bool is_smooth() const { return roughness == 0; }
+  double optical_depth() const { return absorption_per_nm * pigment_thickness_nm; }
+
+  // Radiance pays the squared index ratio once over a whole visit below the film: (n0/n2)^2 or 1.
+  double radiance_scale() const;
+
+  // Cosine below the film of a direction that crosses a smooth film at `cos_exterior`; 0 if none does.
+  double cosine_below(double cos_exterior) const;
+
+  // The attenuation's exponent for one visit of the base, both cosines below the film and > 0.
+  double absorption_exponent(double cos_i, double cos_o) const;
+};
+
+// Below this roughness the film would be numerically a mirror: allowed are 0 and [kMinRoughness, 1].
+inline constexpr double kMinRoughness = 1e-3;
+
+// Text access by key, for CSV columns, table metadata and messages. Lists are separated by ';'.
+const std::vector<std::string>& material_keys();
+std::string get_text(const Material& material, std::string_view key);
+// Throws Error "key 'K': found V; allowed: ..." (without a file: the caller adds it).
+void set_from_text(Material& material, std::string_view key, const std::string& text);
+
+std::string_view to_string(Transmission transmission);
+std::string_view to_string(AbsorptionPath path);
+
+// Allowed interval of a numeric key, as used by every reader.
+struct Interval {
+  double low, high;
+};
+Interval allowed_interval(std::string_view key);
+
+}  // namespace sunbeam

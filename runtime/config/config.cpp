@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <sstream>
 
 #include "sunbeam/core/error.h"
+#include "sunbeam/core/file.h"
 
 namespace sunbeam {
 
@@ -104,12 +104,7 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 }
 
 ConfigTable ConfigTable::load(const std::string& path, const std::vector<std::string>& overrides) {
-  std::error_code ignored;
-  std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path, ignored)) throw Error(path + ": cannot open the file");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return parse(text.str(), path, overrides);
+  return parse(read_file(path), path, overrides);
 }
 
 ConfigTable ConfigTable::parse(const std::string& text, const std::string& name,

@@ -1,0 +1,37 @@
+// The running mean of one tabulated value and how well it is known.
+#pragma once
+
+#include "sunbeam/core/vec.h"
+
+namespace sunbeam {
+
+// Values darker than this (1/sr) need no better absolute noise than at it: an albedo of 0.002, the floor of
+// verify's error.
+inline constexpr double kDarkestValue = 0.002 * kInvPi;
+
+class Cell {
+ public:
+  void add(const Rgb& estimate) {
+    sum_ += estimate;
+    sum_of_squares_ += estimate * estimate;
+  }
+
+  Rgb mean_of(double walks) const { return sum_ / walks; }
+
+  Rgb standard_error(double walks) const {
+    return transform(sum_of_squares_ / walks - square_each(mean_of(walks)),
+                     [walks](double variance) { return std::sqrt(std::max(0.0, variance) / (walks - 1)); });
+  }
+
+  // The stop rule: mean over channels known to `noise` of its value, or of kDarkestValue.
+  bool is_known(double noise, double walks) const {
+    return mean(standard_error(walks)) <= noise * std::max(mean(mean_of(walks)), kDarkestValue);
+  }
+
+ private:
+  static Rgb square_each(const Rgb& x) { return x * x; }
+
+  Rgb sum_, sum_of_squares_;
+};
+
+}  // namespace sunbeam

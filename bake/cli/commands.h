@@ -1,0 +1,52 @@
+// The subcommands of `sunbeam`: options as plain structs, one function each. main.cpp fills them from the
+// command line; every function returns the exit code and throws Error for bad input.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace sunbeam {
+
+struct BakeOptions {
+  std::string recipe, output;
+  std::vector<std::string> overrides;
+  int threads = 0;
+  std::uint64_t seed = 1;
+};
+int run_bake(const BakeOptions& options);
+
+struct InfoOptions {
+  std::string table;
+  bool json = false;
+};
+int run_info(const InfoOptions& options);
+
+struct EvalOptions {
+  std::string source, points;
+  std::string quantity = "brdf";
+  std::vector<std::string> overrides;
+  std::int64_t samples = 10000;
+  std::uint64_t seed = 1;
+};
+int run_eval(const EvalOptions& options);
+
+struct VerifyOptions {
+  std::string table, json;
+  int points = 1000;
+  int threads = 0;
+  std::uint64_t seed = 2024;
+};
+int run_verify(const VerifyOptions& options);
+
+struct RenderOptions {
+  std::string scene, output, stats;
+  std::string material = "table";
+  std::string size;
+  int samples_per_pixel = 0;  // 0: as the scene says
+  int threads = 0;
+  std::uint64_t seed = 1;
+};
+int run_render(const RenderOptions& options);
+
+}  // namespace sunbeam

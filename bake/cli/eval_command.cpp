@@ -1,0 +1,46 @@
+#include <fstream>
+#include <iostream>
+
+#include "bake/cli/commands.h"
+#include "bake/points.h"
+#include "bake/recipe.h"
+#include "sunbeam/core/error.h"
+#include "sunbeam/core/file.h"
+#include "sunbeam/table_vdb.h"
+
+namespace sunbeam {
+namespace {
+
+Quantity parse_quantity(const std::string& name) {
+  return name == "albedo" ? Quantity::albedo : name == "film" ? Quantity::film : Quantity::brdf;
+}
+
+bool is_table(const std::string& path) { return extension(path) == ".exr" || extension(path) == ".vdb"; }
+
+void evaluate(const EvalOptions& options, std::istream& csv, const std::string& name) {
+  const PointsSettings settings{parse_quantity(options.quantity), options.samples, options.seed};
+  if (!is_table(options.source)) {
+    evaluate_points_live(load_recipe(options.source, options.overrides).material, csv, name, settings,
+                         std::cout);
+    return;
+  }
+  if (!options.overrides.empty()) throw Error(options.source + ": --set changes a recipe, not a table");
+  evaluate_points_table(load_table(options.source), csv, name, settings, std::cout);
+}
+
+}  // namespace
+
+int run_eval(const EvalOptions& options) {
+  std::ios::sync_with_stdio(false);
+  if (options.points == "-") {
+    evaluate(options, std::cin, "standard input");
+  } else {
+    std::ifstream file(options.points);
+    if (!file) throw Error(options.points + ": cannot read");
+    evaluate(options, file, options.points);
+  }
+  if (!std::cout.flush()) throw Error("standard output: cannot write");
+  return 0;
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,62 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "bake/cli/commands.h"
+#include "sunbeam/core/text.h"
+#include "sunbeam/table_vdb.h"
+
+namespace sunbeam {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number_or_text(const std::string& text) {
+  double value = 0;
+  return parse_number(text, value) ? Json(value) : Json(text);
+}
+
+Json describe(const Table& table, const std::string& path) {
+  Json json;
+  json["schema_version"] = kTableSchemaVersion;
+  json["encoding"] = table.info.at("encoding");
+  json["bytes"] = std::filesystem::file_size(path);
+  for (const Axis& axis : table.remainder.axes())
+    json["axes"].push_back({{"name", axis.name}, {"unit", axis.unit}, {"nodes", axis.nodes}});
+  for (const char* key : {"recipe", "recipe_hash"}) json[key] = table.info.at(key);
+  for (const char* key : {"seed", "samples"}) json[key] = std::stoull(table.info.at(key));
+  for (const char* key : {"estimator", "spectrum", "tool_version"}) json[key] = table.info.at(key);
+  json["error"] = Json::object();
+  for (const auto& [key, value] : table.info)
+    if (key.starts_with("error.")) json["error"][key.substr(6)] = number_or_text(value);
+  return json;
+}
+
+void print_text(const Json& json, const Table& table) {
+  for (const auto& [key, value] : json.items()) {
+    if (key == "axes" || key == "recipe" || key == "error") continue;
+    fmt::print("{:<16}{}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  for (const Axis& axis : table.remainder.axes())
+    fmt::print("axis            {:<18} {:>4} nodes, {:g} to {:g} {}\n", axis.name, axis.size(),
+               axis.nodes.front(), axis.nodes.back(), axis.unit == "1" ? "" : axis.unit);
+  for (const auto& [key, value] : json["error"].items())
+    fmt::print("error           {:<18} {}\n", key,
+               value.is_string() ? value.get<std::string>() : value.dump());
+  fmt::print("recipe\n{}\n", json["recipe"].get<std::string>());
+}
+
+}  // namespace
+
+int run_info(const InfoOptions& options) {
+  const Table table = load_table(options.table);
+  const Json json = describe(table, options.table);
+  if (options.json)
+    fmt::print("{}\n", json.dump(2));
+  else
+    print_text(json, table);
+  return 0;
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,135 @@
+// The command `sunbeam`. Parses the command line and translates errors into exit codes, nothing else:
+// 0 success, 1 a check failed, 2 bad input or an operation that could not be done.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <new>
+
+#include "bake/cli/commands.h"
+#include "bake/version.h"
+#include "sunbeam/core/error.h"
+
+namespace {
+
+using namespace sunbeam;
+
+constexpr int kThreadLimit = 1024;
+
+CLI::App* add_command(CLI::App& app, const char* name, const char* what, const char* example) {
+  CLI::App* command = app.add_subcommand(name, what);
+  command->footer(std::string("Example:\n  ") + example);
+  return command;
+}
+
+void add_threads(CLI::App* command, int& threads) {
+  command->add_option("--threads", threads, "Threads; 0 uses all")->check(CLI::Range(0, kThreadLimit));
+}
+
+void add_overrides(CLI::App* command, std::vector<std::string>& overrides) {
+  command->add_option("--set", overrides, "Override a recipe key: section.key=value")
+      ->expected(1)
+      ->take_all();
+}
+
+void add_bake(CLI::App& app, BakeOptions& o, int& exit_code) {
+  CLI::App* command =
+      add_command(app, "bake", "Bake a recipe into a table (.exr or .vdb)",
+                  "sunbeam bake tables/recipes/sunbeam.toml -o skin.exr --set material.albedo=0.5");
+  command->add_option("recipe", o.recipe, "Recipe (TOML)")->required();
+  command->add_option("-o,--output", o.output, "Table to write; the extension chooses the form")->required();
+  add_overrides(command, o.overrides);
+  add_threads(command, o.threads);
+  command->add_option("--seed", o.seed, "Random seed");
+  command->callback([&] { exit_code = run_bake(o); });
+}
+
+void add_info(CLI::App& app, InfoOptions& o, int& exit_code) {
+  CLI::App* command = add_command(app, "info", "Show what a table holds", "sunbeam info skin.exr --json");
+  command->add_option("table", o.table, "Table (.exr or .vdb)")->required();
+  command->add_flag("--json", o.json, "As JSON");
+  command->callback([&] { exit_code = run_info(o); });
+}
+
+void add_eval(CLI::App& app, EvalOptions& o, int& exit_code) {
+  CLI::App* command =
+      add_command(app, "eval", "Evaluate a recipe (live) or a table at the rows of a CSV file",
+                  "echo 'theta_i_deg,theta_o_deg,phi_deg\n  30,30,180' | "
+                  "sunbeam eval tables/recipes/sunbeam.toml --points -");
+  command->add_option("source", o.source, "Recipe (.toml) or table (.exr, .vdb)")->required();
+  command->add_option("--points", o.points, "CSV file, or - for standard input")->required();
+  command->add_option("--quantity", o.quantity, "What to evaluate")
+      ->check(CLI::IsMember({"brdf", "albedo", "film"}));
+  add_overrides(command, o.overrides);
+  command->add_option("--samples", o.samples, "Walks a row, live only")->check(CLI::Range(2.0, 1e15));
+  command->add_option("--seed", o.seed, "Random seed; row k uses stream k");
+  command->callback([&] { exit_code = run_eval(o); });
+}
+
+void add_verify(CLI::App& app, VerifyOptions& o, int& exit_code) {
+  CLI::App* command =
+      add_command(app, "verify", "Hold a table against live evaluation at random held-out points",
+                  "sunbeam verify skin.exr --json report.json");
+  command->add_option("table", o.table, "Table (.exr or .vdb)")->required();
+  command->add_option("--points", o.points, "Random points")->check(CLI::Range(1, 100000000));
+  command->add_option("--json", o.json, "Write the figures to this file");
+  add_threads(command, o.threads);
+  command->add_option("--seed", o.seed, "Random seed; point k uses stream k");
+  command->callback([&] { exit_code = run_verify(o); });
+}
+
+void add_render(CLI::App& app, RenderOptions& o, int& exit_code) {
+  CLI::App* command =
+      add_command(app, "render", "Render a scene with a table, with the live model, or diffuse",
+                  "sunbeam render tables/scenes/sphere.toml -o sphere.exr --size 960x540 --spp 64");
+  command->add_option("scene", o.scene, "Scene (TOML)")->required();
+  command->add_option("-o,--output", o.output, "Image to write (.exr); a .png goes beside it")->required();
+  command->add_option("--material", o.material, "Skin material")
+      ->check(CLI::IsMember({"table", "live", "diffuse"}));
+  command->add_option("--size", o.size, "WIDTHxHEIGHT in pixels");
+  command->add_option("--spp", o.samples_per_pixel, "Samples per pixel")->check(CLI::Range(1, 1 << 24));
+  add_threads(command, o.threads);
+  command->add_option("--seed", o.seed, "Random seed");
+  command->add_option("--stats", o.stats, "Write timing and counts to this JSON file");
+  command->callback([&] { exit_code = run_render(o); });
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Sunbeam: bakes iridescent layered materials into BRDF tables, proves and previews them.");
+  app.set_version_flag("--version", std::string("sunbeam ") + kToolVersion);
+  app.require_subcommand(1);
+  app.footer(
+      "Example:\n  sunbeam bake tables/recipes/quick.toml -o quick.exr\n"
+      "`sunbeam COMMAND --help` shows the options of a command.");
+  int exit_code = 0;
+  BakeOptions bake;
+  InfoOptions info;
+  EvalOptions eval;
+  VerifyOptions verify;
+  RenderOptions render;
+  add_bake(app, bake, exit_code);
+  add_info(app, info, exit_code);
+  add_eval(app, eval, exit_code);
+  add_verify(app, verify, exit_code);
+  add_render(app, render, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const Error& error) {
+    fmt::print(stderr, "sunbeam: error: {}\n", error.what());
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "sunbeam: error: not enough memory\n");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "sunbeam: error: {}\n", error.what());
+  }
+  return 2;
+}

@@ -1,0 +1,161 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "bake/cli/commands.h"
+#include "bake/cli/progress.h"
+#include "bake/live/live_bsdf.h"
+#include "bake/recipe.h"
+#include "bake/version.h"
+#include "runtime/tracer/image_io.h"
+#include "runtime/tracer/render.h"
+#include "runtime/tracer/scene.h"
+#include "sunbeam/core/error.h"
+#include "sunbeam/core/file.h"
+#include "sunbeam/lambert.h"
+#include "sunbeam/table_bsdf.h"
+#include "sunbeam/table_vdb.h"
+
+namespace sunbeam {
+namespace {
+
+struct ImageSize {
+  int width = 0, height = 0;  // 0: as the scene says
+};
+
+ImageSize parse_size(const std::string& text) {
+  ImageSize size;
+  const char* end = text.data() + text.size();
+  const auto width = std::from_chars(text.data(), end, size.width);
+  const bool has_x = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
+  const auto height = has_x ? std::from_chars(width.ptr + 1, end, size.height) : width;
+  constexpr int kLargest = 16384;
+  if (!has_x || height.ec != std::errc() || height.ptr != end || size.width < 1 || size.height < 1 ||
+      size.width > kLargest || size.height > kLargest)
+    throw Error(fmt::format("--size: found '{}'; allowed: WIDTHxHEIGHT, each 1 to {}", text, kLargest));
+  return size;
+}
+
+Table load_scene_table(const Scene& scene, const std::string& scene_path) {
+  if (scene.table.empty()) throw Error(scene_path + ": key 'table' is missing; --material live needs none");
+  if (!std::filesystem::exists(scene.table))
+    throw Error(fmt::format("{}: the scene's table {} does not exist; bake it: sunbeam bake {} -o {}",
+                            scene_path, scene.table, scene.recipe.empty() ? "RECIPE" : scene.recipe,
+                            scene.table));
+  return load_table(scene.table);
+}
+
+// A skin's own values over those of the recipe or table.
+Material skin_material(const SceneMaterial& skin, Material material) {
+  material.film_thickness_nm = skin.film_thickness_nm.value_or(material.film_thickness_nm);
+  material.base_ior = skin.base_ior.value_or(material.base_ior);
+  material.absorption_per_nm = skin.absorption_per_nm.value_or(material.absorption_per_nm);
+  return material;
+}
+
+std::unique_ptr<Bsdf> table_skin(const Table& table, const SceneMaterial& skin,
+                                 const std::string& scene_path) {
+  try {
+    return std::make_unique<TableBsdf>(table, Parameters::of(skin_material(skin, table.material)),
+                                       OutsideGrid::refuse);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: material '{}': {}", scene_path, skin.name, error.what()));
+  }
+}
+
+// One BSDF for each material of the scene.
+class Materials {
+ public:
+  Materials(const Scene& scene, const std::string& scene_path, const std::string& mode) {
+    std::optional<Table> table;
+    std::optional<Recipe> recipe;
+    for (const SceneMaterial& m : scene.materials) {
+      if (m.type == SceneMaterial::Type::diffuse) {
+        add(std::make_unique<Lambert>(m.albedo));
+      } else if (mode == "diffuse") {
+        add(std::make_unique<Lambert>(scene.diffuse_albedo));
+      } else if (mode == "live") {
+        if (scene.recipe.empty())
+          throw Error(scene_path + ": key 'recipe' is missing; --material live needs it");
+        if (!recipe) recipe = load_recipe(scene.recipe);
+        add(std::make_unique<LiveBsdf>(skin_material(m, recipe->material)));
+      } else {
+        if (!table) table = load_scene_table(scene, scene_path);
+        add(table_skin(*table, m, scene_path));
+      }
+    }
+    if (table) table_hash_ = table->info.at("recipe_hash");
+  }
+
+  std::span<const Bsdf* const> bsdfs() const { return pointers_; }
+  const std::string& table_hash() const { return table_hash_; }
+
+ private:
+  void add(std::unique_ptr<Bsdf> bsdf) {
+    pointers_.push_back(bsdf.get());
+    owned_.push_back(std::move(bsdf));
+  }
+
+  std::vector<std::unique_ptr<Bsdf>> owned_;
+  std::vector<const Bsdf*> pointers_;
+  std::string table_hash_;
+};
+
+std::string stats_json(const RenderStats& s) {
+  nlohmann::ordered_json json;
+  json["seconds"] = s.seconds;
+  json["cpu_seconds"] = s.cpu_seconds;
+  json["samples"] = s.samples;
+  json["rays"] = s.rays;
+  json["vertices"] = s.vertices;
+  json["samples_per_second"] = s.samples_per_second;
+  json["peak_rss_mb"] = s.peak_rss_mb;
+  json["bad_samples"] = s.bad_samples;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace
+
+int run_render(const RenderOptions& options) {
+  if (extension(options.output) != ".exr")
+    throw Error(options.output + ": extension is '" + extension(options.output) +
+                "'; allowed for an image: .exr");
+  RenderSettings settings;
+  if (!options.size.empty()) {
+    const ImageSize size = parse_size(options.size);
+    settings.width = size.width;
+    settings.height = size.height;
+  }
+  const Scene scene = load_scene(options.scene);
+  const Materials materials(scene, options.scene, options.material);
+  const std::string png = std::filesystem::path(options.output).replace_extension(".png").string();
+  for (const auto& path : {options.output, png}) require_writable(path);
+  if (!options.stats.empty()) require_writable(options.stats);
+
+  settings.spp = options.samples_per_pixel;
+  settings.threads = options.threads;
+  settings.seed = options.seed;
+  settings.progress = Progress("render", "%", 100);
+  const RenderResult result = render(scene, materials.bsdfs(), settings);
+
+  write_exr(options.output, {result.mean,
+                             result.variance,
+                             {{"sunbeam.scene", options.scene},
+                              {"sunbeam.material", options.material},
+                              {"sunbeam.recipe_hash", materials.table_hash()},
+                              {"sunbeam.seed", std::to_string(options.seed)},
+                              {"sunbeam.tool_version", kToolVersion}}});
+  write_png(png, result.mean);
+  if (!options.stats.empty()) write_file_atomically(options.stats, stats_json(result.stats));
+  if (result.stats.bad_samples > 0)
+    fmt::print(stderr, "warning: {} samples were not finite and count as black\n", result.stats.bad_samples);
+  fmt::print(stderr, "{} and {}: {:.2f} s, {:.3g} samples/s\n", options.output, png, result.stats.seconds,
+             result.stats.samples_per_second);
+  return 0;
+}
+
+}  // namespace sunbeam

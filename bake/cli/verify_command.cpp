@@ -1,0 +1,67 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "bake/cli/commands.h"
+#include "bake/cli/progress.h"
+#include "bake/recipe.h"
+#include "bake/verify.h"
+#include "sunbeam/core/file.h"
+#include "sunbeam/table_vdb.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr std::size_t kWorstPoints = 5;
+
+void print_worst(const VerifyReport& report) {
+  auto points = report.points;
+  const std::size_t count = std::min(kWorstPoints, points.size());
+  std::partial_sort(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count), points.end(),
+                    [](const auto& a, const auto& b) { return a.error > b.error; });
+  fmt::print(
+      "worst points: film_thickness_nm  base_ior  absorption_per_nm  theta_i_deg     error  noise_floor\n");
+  for (std::size_t k = 0; k < count; ++k) {
+    const VerifyPoint& p = points[k];
+    fmt::print("              {:>17.2f} {:>9.4f} {:>18.4f} {:>12.2f} {:>9.5f} {:>12.5f}\n",
+               p.parameters.film_thickness_nm, p.parameters.base_ior, p.parameters.absorption_per_nm,
+               std::acos(p.cos_i) * 180 / kPi, p.error, p.noise_floor);
+  }
+}
+
+std::string report_json(const VerifyReport& report) {
+  nlohmann::ordered_json json;
+  for (const auto& [name, value] : figures(report)) json[name] = value;
+  json["points"] = report.points.size();
+  json["truth"] = report.truth;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace
+
+int run_verify(const VerifyOptions& options) {
+  const Table table = load_table(options.table);
+  const Recipe recipe = parse_recipe(table.info.at("recipe"), options.table + ": recipe");
+  if (!options.json.empty()) require_writable(options.json);
+  VerifySettings settings;
+  settings.points = options.points;
+  settings.seed = options.seed;
+  settings.threads = options.threads;
+  settings.tolerance_median = recipe.accuracy.tolerance_median;
+  settings.tolerance_p99 = recipe.accuracy.tolerance_p99;
+  settings.on_progress = Progress("verify", "points", options.points);
+  const VerifyReport report = verify(table, settings);
+
+  fmt::print("truth               {}\n", report.truth);
+  for (const auto& [name, value] : figures(report)) fmt::print("{:<20}{:.6g}\n", name, value);
+  print_worst(report);
+  if (!options.json.empty()) write_file_atomically(options.json, report_json(report));
+
+  const bool passed = within_tolerance(report, settings);
+  fmt::print("{}: median {:.4g} (tolerance {:g}), p99 {:.4g} (tolerance {:g})\n", passed ? "PASS" : "FAIL",
+             report.error.median, settings.tolerance_median, report.error.p99, settings.tolerance_p99);
+  return passed ? 0 : 1;
+}
+
+}  // namespace sunbeam

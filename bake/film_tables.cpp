@@ -1,0 +1,100 @@
+#include "bake/film_tables.h"
+
+#include "bake/live/film_interface.h"
+#include "bake/live/pfmc.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr double kPhaseStep = 0.15;  // rad of film phase between thickness nodes: linear to 0.3 % of a fringe
+constexpr std::size_t kIorRefinement = 3;  // nodes per interval of the recipe's grid
+constexpr std::size_t kCosines = 65;
+constexpr std::size_t kNormalNodes = 48;  // quadrature over visible normals, each way
+
+Axis film_thickness_axis(const Recipe& recipe) {
+  Axis axis = recipe.grid[0];
+  const double span = axis.high() - axis.low();
+  const double phase = 4 * kPi * recipe.material.film_ior * span / kRgb3WavelengthsNm.b;
+  if (axis.size() > 1)
+    axis.nodes =
+        spaced_nodes(axis.low(), axis.high(), static_cast<std::size_t>(std::ceil(phase / kPhaseStep)) + 2, 1);
+  return axis;
+}
+
+Axis film_ior_axis(const Recipe& recipe) {
+  const Axis& coarse = recipe.grid[1];
+  Axis axis = coarse;
+  axis.nodes = {coarse.nodes.front()};
+  for (std::size_t i = 1; i < coarse.size(); ++i) {
+    const double u0 = coarse.coordinate(coarse.nodes[i - 1]), u1 = coarse.coordinate(coarse.nodes[i]);
+    for (std::size_t k = 1; k < kIorRefinement; ++k)
+      axis.nodes.push_back(coarse.low() + square(lerp(static_cast<double>(k) / kIorRefinement, u0, u1)));
+    axis.nodes.push_back(coarse.nodes[i]);
+  }
+  return axis;
+}
+
+// How much of the light along w (cosine of row i) meets facets of cosine j and gets through, film aside: the
+// mean transmittance of a rough film is this row times the film's transmittance at the cosines.
+std::vector<double> crossing_weights(const Material& material, const Axis& cosines) {
+  Material clear = material;  // a film without interfaces, bending like the real one, passes everything
+  clear.film_thickness_nm = 0;
+  const FilmInterface film(clear, kRgb3WavelengthsNm);
+  const Ggx ggx(material.roughness);
+  const std::size_t n = cosines.size();
+  std::vector<double> weights(n * n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 w = direction_from_cosine(std::max(cosines.nodes[i], 1e-6), 0);
+    for (std::size_t k = 0; k < kNormalNodes * kNormalNodes; ++k) {
+      const double u = (static_cast<double>(k % kNormalNodes) + 0.5) / kNormalNodes;
+      const double v = (static_cast<double>(k / kNormalNodes) + 0.5) / kNormalNodes;
+      const Vec3 h = ggx.sample_visible(w, {u, v});
+      const auto crossing = film.cross(w, {h, {Rgb(0), Rgb(1)}, 0});
+      if (!crossing) continue;
+      const Bracket at = cosines.locate(dot(w, h));
+      const double share = crossing->weight.r / (kNormalNodes * kNormalNodes);
+      weights[i * n + at.lower] += share * (1 - at.upper_weight);
+      weights[i * n + at.upper] += share * at.upper_weight;
+    }
+  }
+  return weights;
+}
+
+Rgb weighted_transmittance(const NdArray& reflectance, std::size_t first_cell,
+                           std::span<const double> weights) {
+  Rgb sum;
+  for (std::size_t j = 0; j < weights.size(); ++j)
+    sum += weights[j] * (Rgb(1) - reflectance.get(first_cell + j));
+  return sum;
+}
+
+}  // namespace
+
+void bake_film(const Recipe& recipe, Table& table) {
+  const Axis thickness = film_thickness_axis(recipe), ior = film_ior_axis(recipe);
+  const Axis cosine{"cos_theta", "1", spaced_nodes(0, 1, kCosines, 1), 1, 0};
+  const std::vector<Axis> axes = {thickness, ior, cosine};
+  table.film_reflectance = NdArray("film_reflectance", axes, Precision::single_float);
+  if (!recipe.material.is_smooth())
+    table.film_transmittance = NdArray("film_transmittance", axes, Precision::single_float);
+
+  for (std::size_t b = 0; b < ior.size(); ++b) {
+    Material material = recipe.material;
+    material.base_ior = ior.nodes[b];
+    const auto weights = material.is_smooth() ? std::vector<double>() : crossing_weights(material, cosine);
+    for (std::size_t a = 0; a < thickness.size(); ++a) {
+      material.film_thickness_nm = thickness.nodes[a];
+      const FilmInterface film(material, kRgb3WavelengthsNm);
+      const std::size_t row = a * table.film_reflectance.stride(0) + b * table.film_reflectance.stride(1);
+      for (std::size_t c = 0; c < kCosines; ++c)
+        table.film_reflectance.set(row + c, film.power(cosine.nodes[c]).reflectance);
+      if (material.is_smooth()) continue;
+      for (std::size_t c = 0; c < kCosines; ++c)
+        table.film_transmittance.set(
+            row + c,
+            weighted_transmittance(table.film_reflectance, row, {weights.data() + c * kCosines, kCosines}));
+    }
+  }
+}
+
+}  // namespace sunbeam

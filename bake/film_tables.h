@@ -1,0 +1,12 @@
+// The closed-form part of a table: film reflectance and, for a rough film, its mean transmittance.
+#pragma once
+
+#include "bake/recipe.h"
+#include "sunbeam/table.h"
+
+namespace sunbeam {
+
+// Fills table.film_reflectance and table.film_transmittance for the recipe's grid.
+void bake_film(const Recipe& recipe, Table& table);
+
+}  // namespace sunbeam

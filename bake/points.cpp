@@ -1,0 +1,224 @@
+#include "bake/points.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <ostream>
+
+#include "bake/cell.h"
+#include "bake/csv.h"
+#include "bake/live/pfmc.h"
+#include "sunbeam/core/error.h"
+#include "sunbeam/table_bsdf.h"
+
+namespace sunbeam {
+namespace {
+
+// One result: a colour (three columns, or one where monochromatic) or a single number.
+struct Result {
+  const char* name;
+  Rgb value;
+  bool is_scalar = false;
+};
+using Results = std::vector<Result>;
+
+struct Point {
+  Vec3 wi, wo;
+  std::optional<double> wavelength_nm;
+  std::size_t stream;
+};
+
+std::vector<std::string> result_names(Quantity quantity, bool monochromatic) {
+  const auto expand = [&](std::initializer_list<const char*> names) {
+    std::vector<std::string> columns;
+    for (const std::string name : names) {
+      if (monochromatic || name == "pdf")
+        columns.push_back(name);
+      else
+        for (const char* suffix : {"_r", "_g", "_b"}) columns.push_back(name + suffix);
+    }
+    return columns;
+  };
+  if (quantity == Quantity::brdf) return expand({"first", "rest", "stderr", "pdf", "dirac"});
+  if (quantity == Quantity::albedo) return expand({"total", "stderr"});
+  return expand({"reflectance"});
+}
+
+// The columns of one CSV, found and checked once.
+class PointReader {
+ public:
+  PointReader(const Csv& csv, Quantity quantity) : csv_(csv), wavelength_(csv.column("wavelength_nm")) {
+    theta_i_ = require("theta_i_deg");
+    if (quantity == Quantity::brdf) {
+      theta_o_ = require("theta_o_deg");
+      phi_ = require("phi_deg");
+    }
+    for (const auto& name : result_names(quantity, is_monochromatic()))
+      if (csv.column(name))
+        throw Error(fmt::format("{}: column '{}' has the name of an output column", csv.name, name));
+    for (std::size_t k = 0; k < csv.header.size(); ++k)
+      if (std::find(material_keys().begin(), material_keys().end(), csv.header[k]) != material_keys().end())
+        material_columns_.push_back(k);
+  }
+
+  bool is_monochromatic() const { return wavelength_.has_value(); }
+  const std::vector<std::size_t>& material_columns() const { return material_columns_; }
+
+  Point point(std::size_t row_index) const {
+    const CsvRow& row = csv_.rows[row_index];
+    Point point{polar(row, theta_i_, 0), {0, 0, 1}, {}, row_index};
+    if (theta_o_) point.wo = polar(row, *theta_o_, csv_.number(row, *phi_, -3600, 3600, true) * kPi / 180);
+    if (wavelength_) point.wavelength_nm = csv_.number(row, *wavelength_, 100, 10000, true);
+    return point;
+  }
+
+  Material material(std::size_t row_index, Material material) const {
+    const CsvRow& row = csv_.rows[row_index];
+    for (const std::size_t k : material_columns_) {
+      try {
+        set_from_text(material, csv_.header[k], row.cells[k]);
+      } catch (const Error& error) {
+        throw Error(fmt::format("{}:{}: {}", csv_.name, row.line, error.what()));
+      }
+    }
+    return material;
+  }
+
+ private:
+  std::size_t require(const std::string& key) const {
+    const auto column = csv_.column(key);
+    if (!column)
+      throw Error(
+          fmt::format("{}: column '{}' is missing; found: {}", csv_.name, key, fmt::join(csv_.header, ", ")));
+    return *column;
+  }
+  Vec3 polar(const CsvRow& row, std::size_t column, double phi) const {
+    return spherical_direction(csv_.number(row, column, 0, 90, false) * kPi / 180, phi);
+  }
+
+  const Csv& csv_;
+  std::size_t theta_i_ = 0;
+  std::optional<std::size_t> theta_o_, phi_, wavelength_;
+  std::vector<std::size_t> material_columns_;
+};
+
+Results live_brdf(const Pfmc& model, const Point& point, std::int64_t samples, Rng& rng) {
+  Cell rest;
+  double pdf = 0;
+  for (std::int64_t k = 0; k < samples; ++k) {
+    rest.add(model.estimate_rest(point.wo, point.wi, rng));
+    pdf += model.estimate_pdf(point.wo, point.wi, rng);
+  }
+  const auto walks = static_cast<double>(samples);
+  return {{"first", model.first(point.wo, point.wi)},
+          {"rest", rest.mean_of(walks)},
+          {"stderr", rest.standard_error(walks)},
+          {"pdf", Rgb(pdf / walks), true},
+          {"dirac", model.dirac(point.wi)}};
+}
+
+// The Dirac part exactly, everything else from walks.
+Results live_albedo(const Pfmc& model, const Point& point, std::int64_t samples, Rng& rng) {
+  Cell glossy;
+  for (std::int64_t k = 0; k < samples; ++k) {
+    const auto sample = model.sample(point.wi, rng);
+    glossy.add(sample && !sample->is_dirac ? sample->throughput : Rgb());
+  }
+  const auto walks = static_cast<double>(samples);
+  return {{"total", model.dirac(point.wi) + glossy.mean_of(walks)}, {"stderr", glossy.standard_error(walks)}};
+}
+
+Results live_results(const Material& material, const Point& point, const PointsSettings& settings) {
+  const Rgb wavelengths = point.wavelength_nm ? Rgb(*point.wavelength_nm) : kRgb3WavelengthsNm;
+  const Pfmc model(material, wavelengths);
+  Rng rng(settings.seed, point.stream);
+  if (settings.quantity == Quantity::brdf) return live_brdf(model, point, settings.samples, rng);
+  if (settings.quantity == Quantity::albedo) return live_albedo(model, point, settings.samples, rng);
+  return {{"reflectance", model.film().power(point.wi.z).reflectance}};
+}
+
+Results table_results(const Table& table, const Parameters& parameters, const Point& point,
+                      Quantity quantity) {
+  const TableBsdf bsdf(table, parameters, OutsideGrid::refuse);
+  if (quantity == Quantity::film) return {{"reflectance", bsdf.film_reflectance(point.wi.z)}};
+  if (quantity == Quantity::albedo) return {{"total", bsdf.albedo(point.wi)}, {"stderr", Rgb()}};
+  return {{"first", bsdf.first(point.wo, point.wi)},
+          {"rest", bsdf.rest(point.wo, point.wi)},
+          {"stderr", bsdf.rest_stderr(point.wo, point.wi)},
+          {"pdf", Rgb(bsdf.mis_pdf(point.wo, point.wi)), true},
+          {"dirac", bsdf.dirac(point.wi)}};
+}
+
+// The channel of an rgb3 table that holds this wavelength.
+int table_channel(const Csv& csv, const CsvRow& row, double wavelength_nm) {
+  for (int c = 0; c < 3; ++c)
+    if (kRgb3WavelengthsNm[c] == wavelength_nm) return c;
+  throw Error(fmt::format("{}:{}: column 'wavelength_nm': found {:g}; this table holds {:g}, {:g}, {:g}",
+                          csv.name, row.line, wavelength_nm, kRgb3WavelengthsNm.r, kRgb3WavelengthsNm.g,
+                          kRgb3WavelengthsNm.b));
+}
+
+void append(std::string& line, const Results& results, std::optional<int> channel) {
+  for (const Result& result : results) {
+    if (result.is_scalar || channel)
+      line += fmt::format(",{:.17g}", result.value[result.is_scalar ? 0 : *channel]);
+    else
+      line += fmt::format(",{:.17g},{:.17g},{:.17g}", result.value.r, result.value.g, result.value.b);
+  }
+}
+
+// Evaluates every row in parallel and prints them in order; nothing is printed if any row is bad.
+template <class RowResults>
+void print_rows(const Csv& csv, const PointReader& reader, Quantity quantity, std::ostream& out,
+                RowResults results) {
+  std::vector<std::string> lines(csv.rows.size());
+  tbb::parallel_for(std::size_t{0}, csv.rows.size(), [&](std::size_t k) {
+    const auto [values, channel] = results(k);
+    lines[k] = fmt::format("{}", fmt::join(csv.rows[k].cells, ","));
+    append(lines[k], values, channel);
+  });
+  out << fmt::format("{},{}\n", fmt::join(csv.header, ","),
+                     fmt::join(result_names(quantity, reader.is_monochromatic()), ","));
+  for (const auto& line : lines) out << line << '\n';
+}
+
+using RowAndChannel = std::pair<Results, std::optional<int>>;
+
+}  // namespace
+
+void evaluate_points_live(const Material& material, std::istream& in, const std::string& name,
+                          const PointsSettings& settings, std::ostream& out) {
+  const Csv csv = read_csv(in, name);
+  const PointReader reader(csv, settings.quantity);
+  for (std::size_t k = 0; k < csv.rows.size(); ++k) reader.point(k), reader.material(k, material);
+  print_rows(csv, reader, settings.quantity, out, [&](std::size_t k) -> RowAndChannel {
+    const Point point = reader.point(k);
+    return {live_results(reader.material(k, material), point, settings),
+            point.wavelength_nm ? std::optional(0) : std::nullopt};
+  });
+}
+
+void evaluate_points_table(const Table& table, std::istream& in, const std::string& name,
+                           const PointsSettings& settings, std::ostream& out) {
+  const Csv csv = read_csv(in, name);
+  const PointReader reader(csv, settings.quantity);
+  for (const std::size_t k : reader.material_columns())
+    if (std::find(kParameterNames.begin(), kParameterNames.end(), csv.header[k]) == kParameterNames.end())
+      throw Error(fmt::format("{}: column '{}' is fixed in a table; a table's row may set {}", name,
+                              csv.header[k], fmt::join(kParameterNames, ", ")));
+  print_rows(csv, reader, settings.quantity, out, [&](std::size_t k) -> RowAndChannel {
+    const Point point = reader.point(k);
+    std::optional<int> channel;
+    if (point.wavelength_nm) channel = table_channel(csv, csv.rows[k], *point.wavelength_nm);
+    const Parameters parameters = Parameters::of(reader.material(k, table.material));
+    try {
+      return {table_results(table, parameters, point, settings.quantity), channel};
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}:{}: {}", name, csv.rows[k].line, error.what()));
+    }
+  });
+}
+
+}  // namespace sunbeam

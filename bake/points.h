@@ -1,0 +1,35 @@
+// Evaluates a live recipe or a table at the rows of a CSV file.
+//
+// Columns: any material key overrides the recipe (a table: only its three parameters), wavelength_nm makes
+// the row monochromatic, theta_i_deg, theta_o_deg in [0, 90), phi_deg = azimuth between wi and wo (mirror:
+// 180). Other columns are carried through. Results are appended as columns, suffixed _r _g _b unless
+// monochromatic:
+//   brdf    first, rest, stderr (of rest), pdf (one number), dirac
+//   albedo  total (Dirac included), stderr
+//   film    reflectance (at theta_i_deg, from outside)
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <string>
+
+#include "sunbeam/material.h"
+#include "sunbeam/table.h"
+
+namespace sunbeam {
+
+enum class Quantity { brdf, albedo, film };
+
+struct PointsSettings {
+  Quantity quantity = Quantity::brdf;
+  std::int64_t samples = 10000;  // walks a row (live only), at least 2
+  std::uint64_t seed = 1;        // row k uses random stream k
+};
+
+// `name` is the CSV's, for messages. Throws Error before anything is written if a row is bad.
+void evaluate_points_live(const Material& material, std::istream& csv, const std::string& name,
+                          const PointsSettings& settings, std::ostream& out);
+void evaluate_points_table(const Table& table, std::istream& csv, const std::string& name,
+                           const PointsSettings& settings, std::ostream& out);
+
+}  // namespace sunbeam

@@ -1,0 +1,125 @@
+#include "bake/recipe.h"
+
+#include <fmt/format.h>
+
+#include "runtime/config/config.h"
+#include "sunbeam/core/file.h"
+#include "sunbeam/core/hash.h"
+#include "sunbeam/table.h"
+
+namespace sunbeam {
+namespace {
+
+Range range_of(std::string_view key) {
+  const Interval allowed = allowed_interval(key);
+  return {allowed.low, allowed.high};
+}
+
+double read_roughness(const ConfigTable& config, double fallback) {
+  constexpr const char* kKey = "roughness";
+  if (!config.is_list(kKey)) fallback = config.number(kKey, range_of(kKey), fallback);
+  if (config.is_list(kKey)) {
+    const auto values = config.numbers(kKey, range_of(kKey));
+    if (values.size() != 2)
+      config.fail(kKey, fmt::format("found {} numbers; allowed: one number or a list of 2", values.size()));
+    if (values[0] != values[1])
+      config.fail(
+          kKey,
+          fmt::format(
+              "found [{:g}, {:g}]; allowed: two equal values (an anisotropic film is not supported yet)",
+              values[0], values[1]));
+    fallback = values[0];
+  }
+  if (fallback > 0 && fallback < kMinRoughness)
+    config.fail(kKey, fmt::format("found {:g}; allowed: 0 (smooth) or {:g} to 1", fallback, kMinRoughness));
+  return fallback;
+}
+
+Material read_material(const ConfigTable& config) {
+  Material m;
+  m.transmission = static_cast<Transmission>(config.choice("transmission", {"straight", "refract"}, 1));
+  m.absorption_path = static_cast<AbsorptionPath>(config.choice("absorption_path", {"product", "sum"}, 1));
+  const auto number = [&](const char* key, double& value) {
+    value = config.number(key, range_of(key), value);
+  };
+  number("film_thickness_nm", m.film_thickness_nm);
+  number("exterior_ior", m.exterior_ior);
+  number("film_ior", m.film_ior);
+  number("base_ior", m.base_ior);
+  number("absorption_per_nm", m.absorption_per_nm);
+  number("pigment_thickness_nm", m.pigment_thickness_nm);
+  m.roughness = read_roughness(config, m.roughness);
+  m.albedo = config.rgb("albedo", {0, 1}, m.albedo);
+  return m;
+}
+
+// How the rest depends on a parameter near the axis' first node: like the square root of the IOR's distance
+// from index match, and ever more slowly with absorption.
+struct AxisStyle {
+  const char* unit;
+  double power;
+};
+constexpr AxisStyle kAxisStyles[] = {{"nm", 1}, {"1", 2}, {"1/nm", 3}};
+
+std::vector<double> read_nodes(const ConfigTable& grid, const std::string& key, double power) {
+  const Range allowed = range_of(key);
+  if (!grid.is_table(key)) {
+    const auto nodes = grid.numbers(key, allowed);
+    for (std::size_t i = 1; i < nodes.size(); ++i)
+      if (nodes[i] <= nodes[i - 1]) grid.fail(key, "the list must increase");
+    if (nodes.empty()) grid.fail(key, "the list is empty; allowed: at least one number");
+    return nodes;
+  }
+  const ConfigTable range = grid.table(key);
+  const double from = range.number("from", allowed);
+  const double to = range.number("to", {from, allowed.high});
+  const int count = range.integer("count", 1, 4096);
+  if ((count == 1) != (from == to)) range.fail("count", "one node needs from = to, several need from < to");
+  return spaced_nodes(from, to, static_cast<std::size_t>(count), power);
+}
+
+std::vector<Axis> read_grid(const ConfigTable& grid, const Material& material) {
+  const auto defaults = Parameters::of(material).values();
+  std::vector<Axis> axes;
+  for (std::size_t k = 0; k < kParameterNames.size(); ++k) {
+    Axis axis{kParameterNames[k], kAxisStyles[k].unit, {defaults[k]}, kAxisStyles[k].power, 0};
+    if (grid.has(axis.name)) axis.nodes = read_nodes(grid, axis.name, axis.power);
+    axes.push_back(std::move(axis));
+  }
+  return axes;
+}
+
+}  // namespace
+
+Recipe parse_recipe(const std::string& text, const std::string& name,
+                    const std::vector<std::string>& overrides) {
+  const ConfigTable config = ConfigTable::parse(text, name, overrides);
+  Recipe recipe;
+  recipe.name = name;
+  recipe.material = read_material(config.table("material"));
+  recipe.grid = read_grid(config.table("grid"), recipe.material);
+
+  const ConfigTable table = config.table("table");
+  recipe.table.cosines = table.integer("cosines", 2, 512, recipe.table.cosines);
+  recipe.table.azimuths = table.integer("azimuths", 1, 512, recipe.table.azimuths);
+  recipe.table.precision = static_cast<Precision>(table.choice("precision", {"half", "float"}, 0));
+  table.choice("encoding", {"dense"}, 0);
+
+  const ConfigTable accuracy = config.table("accuracy");
+  recipe.accuracy.noise = accuracy.number("noise", {1e-4, 1}, recipe.accuracy.noise);
+  recipe.accuracy.tolerance_median =
+      accuracy.number("tolerance_median", {1e-6, 10}, recipe.accuracy.tolerance_median);
+  recipe.accuracy.tolerance_p99 = accuracy.number("tolerance_p99", {1e-6, 10}, recipe.accuracy.tolerance_p99);
+
+  config.table("spectrum").choice("mode", {"rgb3"}, 0);
+  config.finish();
+  recipe.text = config.canonical_text();
+  recipe.hash = content_hash(recipe.text);
+  return recipe;
+}
+
+Recipe load_recipe(const std::string& path, const std::vector<std::string>& overrides) {
+  return parse_recipe(read_file(path), path, overrides);
+}
+
+}  // namespace sunbeam

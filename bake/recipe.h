@@ -1,0 +1,43 @@
+// A recipe: what to bake, over which grid, how finely and how accurately. TOML; keys as in docs/recipe.md.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sunbeam/axis.h"
+#include "sunbeam/material.h"
+#include "sunbeam/nd_array.h"
+
+namespace sunbeam {
+
+struct Recipe {
+  Material material;       // [material]: fixed values, and defaults of the grid's parameters
+  std::vector<Axis> grid;  // [grid]: the three parameter axes in table order; one node if not swept
+
+  struct {
+    int cosines = 12;  // nodes over cos(theta), for wi and wo alike
+    int azimuths = 1;  // nodes over |dphi| in [0, pi]; the rest of an isotropic film has no azimuth
+    Precision precision = Precision::half_float;
+    std::string encoding = "dense";
+  } table;
+
+  struct {
+    double noise = 0.005;            // target relative standard error of a tabulated value
+    double tolerance_median = 0.01;  // of verify's error
+    double tolerance_p99 = 0.05;
+  } accuracy;
+
+  std::string spectrum = "rgb3";
+
+  std::string name;  // file name, for messages
+  std::string text;  // canonical TOML with overrides applied
+  std::string hash;  // of `text`
+};
+
+// `overrides` are "section.key=value". Throws Error for anything unknown, missing or out of range.
+Recipe load_recipe(const std::string& path, const std::vector<std::string>& overrides = {});
+Recipe parse_recipe(const std::string& text, const std::string& name,
+                    const std::vector<std::string>& overrides = {});
+
+}  // namespace sunbeam

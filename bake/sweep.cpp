@@ -1,0 +1,171 @@
+#include "bake/sweep.h"
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <mutex>
+#include <thread>
+
+#include "bake/cell.h"
+#include "bake/film_tables.h"
+#include "bake/live/pfmc.h"
+#include "bake/version.h"
+#include "sunbeam/core/text.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr int kFirstBatch = 512;  // walks before the stop rule is asked; doubled until it holds
+constexpr int kMostWalks = 1 << 17;
+constexpr double kLowestCosine = 0.01;
+
+std::vector<Axis> rest_axes(const Recipe& recipe) {
+  std::vector<Axis> axes = recipe.grid;
+  const auto cosines = spaced_nodes(kLowestCosine, 1, static_cast<std::size_t>(recipe.table.cosines), 1);
+  const auto azimuths = spaced_nodes(0, kPi, static_cast<std::size_t>(recipe.table.azimuths), 1);
+  axes.push_back({"cos_theta_i", "1", cosines, 1, 0});
+  axes.push_back({"phi_i", "rad", {0}, 1, 0});
+  axes.push_back({"cos_theta_o", "1", cosines, 1, 0});
+  axes.push_back({"phi_o", "rad", azimuths, 1, 0});
+  return axes;
+}
+
+// Parameters of node `index` of the flattened grid.
+Parameters parameters_at(const std::vector<Axis>& grid, std::size_t index) {
+  const std::size_t c = index % grid[2].size(), b = index / grid[2].size() % grid[1].size();
+  return {grid[0].nodes[index / (grid[1].size() * grid[2].size())], grid[1].nodes[b], grid[2].nodes[c]};
+}
+
+// Rest and its standard error for one wi and every wo of the table.
+struct Row {
+  std::vector<Rgb> value, standard_error;
+  std::uint64_t walks = 0;
+};
+
+Row bake_row(const Pfmc& model, const Vec3& wi, const std::vector<Vec3>& wo, double noise, Rng rng) {
+  std::vector<Cell> cells(wo.size());
+  std::vector<Rgb> estimate(wo.size());
+  Row row;
+  for (std::uint64_t target = kFirstBatch;; target *= 2) {
+    for (; row.walks < target; ++row.walks) {
+      std::fill(estimate.begin(), estimate.end(), Rgb());
+      model.add_rest(wi, wo, rng, estimate);
+      for (std::size_t k = 0; k < wo.size(); ++k) cells[k].add(estimate[k]);
+    }
+    const auto walks = static_cast<double>(row.walks);
+    if (row.walks < kMostWalks &&
+        !std::all_of(cells.begin(), cells.end(), [&](const Cell& c) { return c.is_known(noise, walks); }))
+      continue;
+    for (const Cell& cell : cells) {
+      row.value.push_back(cell.mean_of(walks));
+      row.standard_error.push_back(cell.standard_error(walks));
+    }
+    return row;
+  }
+}
+
+// Averages (i, o) with (o, i): half the noise in variance, and reciprocity to the last bit.
+void average_reciprocal(std::vector<Row>& rows, std::size_t azimuths) {
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (std::size_t o = 0; o < i; ++o)
+      for (std::size_t a = 0; a < azimuths; ++a) {
+        const std::size_t io = o * azimuths + a, oi = i * azimuths + a;
+        const Rgb value = 0.5 * (rows[i].value[io] + rows[o].value[oi]);
+        const Rgb e1 = rows[i].standard_error[io], e2 = rows[o].standard_error[oi];
+        const Rgb error = 0.5 * transform(e1 * e1 + e2 * e2, [](double x) { return std::sqrt(x); });
+        rows[i].value[io] = rows[o].value[oi] = value;
+        rows[i].standard_error[io] = rows[o].standard_error[oi] = error;
+      }
+}
+
+class Sweep {
+ public:
+  Sweep(const Recipe& recipe, const SweepSettings& settings) : recipe_(recipe), settings_(settings) {
+    table_.material = recipe.material;
+    bake_film(recipe, table_);
+    const auto axes = rest_axes(recipe);
+    table_.remainder = NdArray("remainder", axes, recipe.table.precision);
+    table_.rest_stderr = NdArray("rest_stderr", axes, recipe.table.precision);
+    for (const double c : axes[3].nodes) wi_.push_back(direction_from_cosine(c, 0));
+    for (const double c : axes[5].nodes)
+      for (const double phi : axes[6].nodes) wo_.push_back(direction_from_cosine(c, phi));
+    nodes_ = recipe.grid[0].size() * recipe.grid[1].size() * recipe.grid[2].size();
+  }
+
+  Table run() {
+    const int threads =
+        settings_.threads > 0 ? settings_.threads : static_cast<int>(std::thread::hardware_concurrency());
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(threads));
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, nodes_, 1), [&](const auto& range) {
+      for (std::size_t node = range.begin(); node < range.end(); ++node) bake_node(node);
+    });
+    table_.info = {{"recipe", recipe_.text},
+                   {"recipe_hash", recipe_.hash},
+                   {"seed", std::to_string(settings_.seed)},
+                   {"samples", std::to_string(walks_.load())},
+                   {"estimator", kEstimatorName},
+                   {"spectrum", recipe_.spectrum},
+                   {"tool_version", kToolVersion},
+                   {"encoding", recipe_.table.encoding}};
+    return std::move(table_);
+  }
+
+ private:
+  void bake_node(std::size_t node) {
+    const Parameters parameters = parameters_at(recipe_.grid, node);
+    const Material material = parameters.applied_to(recipe_.material);
+    const Pfmc model(material);
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < wi_.size(); ++i) {
+      rows.push_back(
+          bake_row(model, wi_[i], wo_, recipe_.accuracy.noise, Rng(settings_.seed, node * wi_.size() + i)));
+      walks_ += rows.back().walks;
+    }
+    average_reciprocal(rows, table_.remainder.axes()[6].size());
+    store(node, parameters, material, rows);
+    report();
+  }
+
+  void store(std::size_t node, const Parameters& parameters, const Material& material,
+             const std::vector<Row>& rows) {
+    const RestFrame frame(material);
+    const auto transmittance = [&](double cosine) {
+      return table_.transmittance({parameters.film_thickness_nm, parameters.base_ior, cosine});
+    };
+    std::size_t cell = node * table_.remainder.stride(2);
+    for (std::size_t i = 0; i < wi_.size(); ++i) {
+      const Rgb t_i = transmittance(wi_[i].z);
+      for (std::size_t o = 0; o < wo_.size(); ++o, ++cell) {
+        table_.remainder.set(
+            cell, frame.encode(rows[i].value[o], wi_[i].z, wo_[o].z, t_i, transmittance(wo_[o].z)));
+        table_.rest_stderr.set(cell, rows[i].standard_error[o]);
+      }
+    }
+  }
+
+  void report() {
+    const std::size_t done = ++done_;
+    if (!settings_.on_progress) return;
+    const std::lock_guard lock(progress_mutex_);
+    settings_.on_progress(static_cast<double>(done) / static_cast<double>(nodes_));
+  }
+
+  const Recipe& recipe_;
+  const SweepSettings& settings_;
+  Table table_;
+  std::vector<Vec3> wi_, wo_;
+  std::size_t nodes_ = 0;
+  std::atomic<std::uint64_t> walks_ = 0;
+  std::atomic<std::size_t> done_ = 0;
+  std::mutex progress_mutex_;
+};
+
+}  // namespace
+
+Table bake_table(const Recipe& recipe, const SweepSettings& settings) {
+  return Sweep(recipe, settings).run();
+}
+
+}  // namespace sunbeam

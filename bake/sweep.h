@@ -1,0 +1,24 @@
+// Bakes a recipe: PFMC at every node of (film thickness, base IOR, absorption) x directions, in parallel.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "bake/recipe.h"
+#include "sunbeam/table.h"
+
+namespace sunbeam {
+
+inline constexpr const char* kEstimatorName = "pfmc-unidirectional";
+
+struct SweepSettings {
+  std::uint64_t seed = 1;
+  int threads = 0;                                   // 0: all
+  std::function<void(double fraction)> on_progress;  // called now and then, one thread at a time
+};
+
+// The same recipe and seed give the same bits for every thread count: each (parameter node, theta_i) has its
+// own random stream and its own stop rule. info holds everything but the measured error.
+Table bake_table(const Recipe& recipe, const SweepSettings& settings);
+
+}  // namespace sunbeam

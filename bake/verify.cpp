@@ -1,0 +1,198 @@
+#include "bake/verify.h"
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "bake/live/pfmc.h"
+#include "bake/sweep.h"
+#include "sunbeam/table_bsdf.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr std::size_t kDirections = 64;  // wo a point
+constexpr int kMostAttempts = 4096;      // to draw them
+constexpr int kFirstWalks = 256;         // a live run; doubled until the floor is low enough
+constexpr int kMostWalks = 1 << 16;
+constexpr double kDarkestAlbedo = 0.002;
+
+double draw(const Axis& axis, Rng& rng) { return lerp(rng.uniform(), axis.low(), axis.high()); }
+
+// Directions drawn from the table's own density for the viewer at wi (reciprocity makes the roles equal).
+struct Directions {
+  std::vector<Vec3> wo;
+  std::vector<double> weight;  // cos / (pdf attempts)
+};
+
+Directions draw_directions(const TableBsdf& bsdf, const Vec3& wi, Rng& rng) {
+  Directions result;
+  int attempts = 0;
+  // Dirac and lost draws count as attempts; they carry nothing of the non-Dirac integral.
+  for (; attempts < kMostAttempts && result.wo.size() < kDirections; ++attempts) {
+    const auto sample = bsdf.sample(wi, rng);
+    if (!sample || sample->is_dirac) continue;
+    result.wo.push_back(sample->wi);
+    result.weight.push_back(sample->wi.z / bsdf.mis_pdf(wi, sample->wi));
+  }
+  for (double& weight : result.weight) weight /= attempts;
+  return result;
+}
+
+// Rest at every direction by `walks` live walks.
+std::vector<Rgb> live_rest(const Pfmc& model, const Vec3& wi, const std::vector<Vec3>& wo, int walks,
+                           Rng& rng) {
+  std::vector<Rgb> sums(wo.size());
+  for (int k = 0; k < walks; ++k) model.add_rest(wi, wo, rng, sums);
+  for (Rgb& value : sums) value *= 1.0 / walks;
+  return sums;
+}
+
+double mean_abs(const Rgb& a) {
+  return mean(transform(a, [](double x) { return std::abs(x); }));
+}
+
+class PointCheck {
+ public:
+  PointCheck(const Table& table, const VerifySettings& settings, std::uint64_t index)
+      : settings_(settings), rng_(settings.seed, index) {
+    point_.parameters = {draw(table.parameter_axis(0), rng_), draw(table.parameter_axis(1), rng_),
+                         draw(table.parameter_axis(2), rng_)};
+    point_.cos_i = lerp(rng_.uniform(), std::cos(89 * kPi / 180), 1);
+    wi_ = direction_from_cosine(point_.cos_i, 0);
+    bsdf_.emplace(table, point_.parameters, OutsideGrid::refuse);
+    model_.emplace(point_.parameters.applied_to(table.material));
+  }
+
+  VerifyPoint run() {
+    directions_ = draw_directions(*bsdf_, wi_, rng_);
+    const double target = settings_.tolerance_median / 3;
+    std::vector<Rgb> live, again;
+    for (int walks = kFirstWalks;; walks *= 2) {
+      live = live_rest(*model_, wi_, directions_.wo, walks, rng_);
+      again = live_rest(*model_, wi_, directions_.wo, walks, rng_);
+      point_.noise_floor = floor(live, again);
+      if (point_.noise_floor <= target || walks >= kMostWalks) break;
+    }
+    measure_errors(live);
+    point_.dirac_error =
+        max_component(transform(bsdf_->film_reflectance(wi_.z) - model_->film().power(wi_.z).reflectance,
+                                [](double x) { return std::abs(x); }));
+    point_.albedo = max_component(bsdf_->albedo(wi_));
+    return point_;
+  }
+
+ private:
+  double floor(const std::vector<Rgb>& live, const std::vector<Rgb>& again) const {
+    double difference = 0;
+    for (std::size_t k = 0; k < live.size(); ++k)
+      difference += directions_.weight[k] * mean_abs(live[k] - again[k]);
+    return difference / denominator(live);
+  }
+
+  double denominator(const std::vector<Rgb>& live) const {
+    double total = 0;
+    for (std::size_t k = 0; k < live.size(); ++k)
+      total += directions_.weight[k] * mean(model_->first(directions_.wo[k], wi_) + live[k]);
+    return std::max(total, kDarkestAlbedo);
+  }
+
+  void measure_errors(const std::vector<Rgb>& live) {
+    double all = 0, rest = 0, rest_total = 0;
+    for (std::size_t k = 0; k < live.size(); ++k) {
+      const Vec3& wo = directions_.wo[k];
+      const Rgb rest_difference = bsdf_->rest(wo, wi_) - live[k];
+      const Rgb first_difference = bsdf_->first(wo, wi_) - model_->first(wo, wi_);
+      all += directions_.weight[k] * mean_abs(first_difference + rest_difference);
+      rest += directions_.weight[k] * mean_abs(rest_difference);
+      rest_total += directions_.weight[k] * mean(live[k]);
+      check_reciprocity(wo);
+    }
+    point_.error = all / denominator(live);
+    point_.rest_error = rest / std::max(rest_total, kDarkestAlbedo);
+  }
+
+  void check_reciprocity(const Vec3& wo) {
+    const Rgb forward = bsdf_->eval(wo, wi_, rng_), backward = bsdf_->eval(wi_, wo, rng_);
+    for (int c = 0; c < 3; ++c) {
+      const double scale = std::max({forward[c], backward[c], kDarkestAlbedo * kInvPi});
+      point_.reciprocity = std::max(point_.reciprocity, std::abs(forward[c] - backward[c]) / scale);
+    }
+  }
+
+  const VerifySettings& settings_;
+  Rng rng_;
+  VerifyPoint point_;
+  Vec3 wi_;
+  std::optional<TableBsdf> bsdf_;
+  std::optional<Pfmc> model_;
+  Directions directions_;
+};
+
+// Order statistic: the smallest value that at least a share q of all values do not exceed.
+double quantile(std::vector<double> values, double q) {
+  const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(values.size())));
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+template <class Member>
+Quantiles quantiles(const std::vector<VerifyPoint>& points, Member member) {
+  std::vector<double> values;
+  for (const auto& point : points) values.push_back(point.*member);
+  return {quantile(values, 0.5), quantile(values, 0.95), quantile(values, 0.99), quantile(values, 1)};
+}
+
+}  // namespace
+
+VerifyReport verify(const Table& table, const VerifySettings& settings) {
+  VerifyReport report;
+  report.truth = kEstimatorName;
+  report.points.resize(static_cast<std::size_t>(settings.points));
+  std::atomic<std::size_t> done = 0;
+  std::mutex progress_mutex;
+  const int threads =
+      settings.threads > 0 ? settings.threads : static_cast<int>(std::thread::hardware_concurrency());
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(threads));
+  tbb::parallel_for(std::size_t{0}, report.points.size(), [&](std::size_t k) {
+    report.points[k] = PointCheck(table, settings, k).run();
+    const double fraction = static_cast<double>(++done) / static_cast<double>(report.points.size());
+    if (!settings.on_progress) return;
+    const std::lock_guard lock(progress_mutex);
+    settings.on_progress(fraction);
+  });
+  report.error = quantiles(report.points, &VerifyPoint::error);
+  report.rest_error = quantiles(report.points, &VerifyPoint::rest_error);
+  report.noise_floor = quantiles(report.points, &VerifyPoint::noise_floor);
+  report.dirac_error_p99 = quantiles(report.points, &VerifyPoint::dirac_error).p99;
+  report.energy_max = quantiles(report.points, &VerifyPoint::albedo).max;
+  report.reciprocity_max = quantiles(report.points, &VerifyPoint::reciprocity).max;
+  return report;
+}
+
+bool within_tolerance(const VerifyReport& report, const VerifySettings& settings) {
+  return report.error.median <= settings.tolerance_median && report.error.p99 <= settings.tolerance_p99;
+}
+
+std::vector<std::pair<std::string, double>> figures(const VerifyReport& report) {
+  return {{"error_median", report.error.median},
+          {"error_p95", report.error.p95},
+          {"error_p99", report.error.p99},
+          {"error_max", report.error.max},
+          {"rest_error_median", report.rest_error.median},
+          {"rest_error_p99", report.rest_error.p99},
+          {"noise_floor", report.noise_floor.median},
+          {"noise_floor_p99", report.noise_floor.p99},
+          {"dirac_error_p99", report.dirac_error_p99},
+          {"energy_max", report.energy_max},
+          {"reciprocity_max", report.reciprocity_max},
+          {"points", static_cast<double>(report.points.size())}};
+}
+
+}  // namespace sunbeam

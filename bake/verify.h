@@ -1,0 +1,59 @@
+// A table against live PFMC at random held-out parameters: how far off it is, and how much of that is noise.
+//
+// Point k draws its own parameters (uniform over each axis' physical range) and wi (uniform in cosine, theta
+// <= 89 degrees) from random stream k. Its error is
+//     Int |f_table - f_live| cos_o dwo / max(Int f_live cos_o dwo, 0.002),   f = first (non-Dirac) + rest,
+// mean over channels, by importance sampling with the table's own density. The live values are
+// noisy, which biases an L1 error upwards; noise_floor is the same figure with the table replaced by a
+// second, independent live run of equal cost. Each point spends walks until its own floor is a third of the
+// tolerance.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sunbeam/table.h"
+
+namespace sunbeam {
+
+struct VerifySettings {
+  int points = 1000;
+  std::uint64_t seed = 2024;
+  int threads = 0;  // 0: all
+  double tolerance_median = 0.01;
+  double tolerance_p99 = 0.05;
+  std::function<void(double fraction)> on_progress;
+};
+
+struct VerifyPoint {
+  Parameters parameters;
+  double cos_i = 0;
+  double error = 0, rest_error = 0;
+  double noise_floor = 0;
+  double dirac_error = 0;  // |R_table - R|, largest channel
+  double albedo = 0;       // of the table, Dirac included, largest channel
+  double reciprocity = 0;  // max |f(i,o) - f(o,i)| / max(f(i,o), f(o,i), 0.002/pi)
+};
+
+struct Quantiles {
+  double median, p95, p99, max;
+};
+
+struct VerifyReport {
+  std::vector<VerifyPoint> points;
+  Quantiles error, rest_error, noise_floor;
+  double dirac_error_p99 = 0, energy_max = 0, reciprocity_max = 0;
+  std::string truth;  // the estimator the table was held against
+};
+
+VerifyReport verify(const Table& table, const VerifySettings& settings);
+
+// True if median and p99 of the error are within the tolerances.
+bool within_tolerance(const VerifyReport& report, const VerifySettings& settings);
+
+// The figures by their JSON names: error_median, error_p95, ..., points.
+std::vector<std::pair<std::string, double>> figures(const VerifyReport& report);
+
+}  // namespace sunbeam

@@ -1,0 +1,7 @@
+#pragma once
+
+namespace sunbeam {
+
+inline constexpr const char* kToolVersion = SUNBEAM_VERSION;
+
+}  // namespace sunbeam

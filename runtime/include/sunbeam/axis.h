@@ -1,0 +1,43 @@
+// One axis of a table: its nodes, and how to find a value between them.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace sunbeam {
+
+// Two neighbouring nodes and the weight of the upper one.
+struct Bracket {
+  std::size_t lower = 0, upper = 0;
+  double upper_weight = 0;
+};
+
+// Interpolation is linear in the coordinate u(x) = (x - nodes.front())^(1 / power); power 1 is plain linear,
+// 2 and 3 suit quantities that behave like a square or cube root at the first node.
+// A periodic axis (period > 0) has its nodes in [first, first + period) and wraps round.
+struct Axis {
+  std::string name;
+  std::string unit;
+  std::vector<double> nodes;  // strictly increasing, at least one
+  double power = 1;
+  double period = 0;
+
+  std::size_t size() const { return nodes.size(); }
+  double low() const { return nodes.front(); }
+  double high() const { return period > 0 ? nodes.front() + period : nodes.back(); }
+  double coordinate(double x) const;
+
+  // Clamps to the first or last node; wraps a periodic axis.
+  Bracket locate(double x) const;
+
+  // Empty if the axis is sound, else what is wrong with it.
+  std::string defect() const;
+
+  bool operator==(const Axis&) const = default;
+};
+
+// `count` nodes from `from` to `to`, uniform in the axis coordinate of the given power.
+std::vector<double> spaced_nodes(double from, double to, std::size_t count, double power);
+
+}  // namespace sunbeam

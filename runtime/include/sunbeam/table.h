@@ -1,0 +1,94 @@
+// A baked material: BRDF data over (film thickness, base IOR, absorption) and two directions.
+//
+// What is exactly known stays in closed form and only the remainder is tabulated; with c_i, c_o the cosines
+// of the directions, m_i, m_o the cosines below the film, tau the optical depth, s = (n0/n2)^2 or 1 and kd
+// albedo:
+//
+//   f     = first + rest
+//   first = D(h) G2(wi, wo) R(wi.h) / (4 c_i c_o)            (smooth film: a Dirac of weight R(c_i) instead)
+//   rest  = s T(c_i) T(c_o) [ kd/pi exp(-tau path(m_i, m_o)) + exp(-min(tau (1/m_i + 1/m_o), 12)) remainder ]
+//
+// R = `film_reflectance`, T = 1 - R for a smooth film and `film_transmittance` for a rough one, `remainder` =
+// the array of that name; path as in AbsorptionPath. The first term in brackets is one visit of the base
+// through a smooth film, the remainder holds further visits and what roughness changes. The exponential in
+// front of it carries its decay; the cap keeps it within the range of a half float. All values are per colour
+// channel.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+
+#include "sunbeam/angles.h"
+#include "sunbeam/material.h"
+#include "sunbeam/nd_array.h"
+
+namespace sunbeam {
+
+inline constexpr int kTableSchemaVersion = 1;
+
+// The three parameters a table can vary, in the order of its axes.
+inline constexpr std::array<const char*, 3> kParameterNames = {"film_thickness_nm", "base_ior",
+                                                               "absorption_per_nm"};
+
+struct Parameters {
+  double film_thickness_nm, base_ior, absorption_per_nm;
+
+  static Parameters of(const Material& material) {
+    return {material.film_thickness_nm, material.base_ior, material.absorption_per_nm};
+  }
+  Material applied_to(Material material) const {
+    material.film_thickness_nm = film_thickness_nm;
+    material.base_ior = base_ior;
+    material.absorption_per_nm = absorption_per_nm;
+    return material;
+  }
+  std::array<double, 3> values() const { return {film_thickness_nm, base_ior, absorption_per_nm}; }
+};
+
+struct Table {
+  Material material;  // fixed values, and defaults for the parameters
+  Symmetry symmetry = Symmetry::isotropic;
+
+  // Axes (film_thickness_nm, base_ior, cos_theta); finer than the grid, as fringes need it.
+  NdArray film_reflectance;
+  NdArray film_transmittance;  // empty for a smooth film
+
+  // Axes (film_thickness_nm, base_ior, absorption_per_nm, cos_theta_i, phi_i, cos_theta_o, phi_o); a
+  // parameter that is not in the grid has one node.
+  NdArray remainder;
+  NdArray rest_stderr;  // standard error of rest, 1/sr, same axes
+
+  // Provenance and measured error as text: recipe, recipe_hash, seed, samples, estimator, spectrum,
+  // tool_version, encoding, error.<name>.
+  std::map<std::string, std::string> info;
+
+  const Axis& parameter_axis(std::size_t k) const { return remainder.axes()[k]; }
+
+  // T at a node or between: see above. `x` = (film_thickness_nm, base_ior, cos_theta).
+  Rgb transmittance(const std::array<double, 3>& x) const;
+
+  bool operator==(const Table& other) const;
+};
+
+// The remainder's frame at one parameter point, shared by the bake (encode) and the look-up (decode).
+class RestFrame {
+ public:
+  explicit RestFrame(const Material& material) : material_(material), scale_(material.radiance_scale()) {}
+
+  Rgb decode(const Rgb& remainder, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
+  Rgb encode(const Rgb& rest, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
+
+ private:
+  struct Terms {
+    Rgb front;        // s T T
+    Rgb first_visit;  // kd/pi exp(-tau path)
+    double decay;
+  };
+  Terms terms(double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
+
+  Material material_;
+  double scale_;
+};
+
+}  // namespace sunbeam

@@ -1,0 +1,19 @@
+// Table files. Two forms hold the same content without loss: `.exr` (multi-part OpenEXR, here) and `.vdb`
+// (OpenVDB grids, in table_vdb.h, an optional target). docs/table_format.md draws both layouts.
+//
+// Every function throws Error naming the file and what is wrong; writing is atomic.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "sunbeam/table.h"
+
+namespace sunbeam {
+
+Table load_table_exr(const std::string& path);
+Table parse_table_exr(std::string_view bytes, const std::string& name);  // from memory; `name` for messages
+std::string table_exr_bytes(const Table& table);  // the same table gives the same bytes
+void save_table_exr(const Table& table, const std::string& path);
+
+}  // namespace sunbeam

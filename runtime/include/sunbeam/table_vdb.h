@@ -1,0 +1,23 @@
+// Table files in OpenVDB form; see table_io.h. Link sunbeam::table_vdb.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "sunbeam/table.h"
+
+namespace sunbeam {
+
+Table load_table_vdb(const std::string& path);
+Table parse_table_vdb(std::string_view bytes, const std::string& name);
+std::string table_vdb_bytes(const Table& table);
+void save_table_vdb(const Table& table, const std::string& path);
+
+// Either form, by the extension of the path.
+Table load_table(const std::string& path);
+void save_table(const Table& table, const std::string& path);
+std::string table_bytes(const Table& table, const std::string& path);
+// Throws Error unless the extension is one of the two.
+void require_table_extension(const std::string& path);
+
+}  // namespace sunbeam

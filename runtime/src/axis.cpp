@@ -1,0 +1,51 @@
+#include "sunbeam/axis.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sunbeam {
+
+double Axis::coordinate(double x) const {
+  const double offset = std::max(0.0, x - nodes.front());
+  if (power == 1) return offset;
+  if (power == 2) return std::sqrt(offset);
+  if (power == 3) return std::cbrt(offset);
+  return std::pow(offset, 1 / power);
+}
+
+Bracket Axis::locate(double x) const {
+  if (nodes.size() == 1) return {};
+  if (period > 0) {
+    x -= period * std::floor((x - nodes.front()) / period);
+    if (x >= nodes.back()) {
+      const double gap = nodes.front() + period - nodes.back();
+      return {nodes.size() - 1, 0, std::min(1.0, (x - nodes.back()) / gap)};
+    }
+  }
+  const auto above = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, x);
+  const auto upper = static_cast<std::size_t>(above - nodes.begin());
+  const double u0 = coordinate(nodes[upper - 1]), u1 = coordinate(nodes[upper]);
+  return {upper - 1, upper, std::clamp((coordinate(x) - u0) / (u1 - u0), 0.0, 1.0)};
+}
+
+std::string Axis::defect() const {
+  if (nodes.empty()) return "has no nodes";
+  if (!(power >= 1 && power <= 8)) return "has a power outside 1 to 8";
+  if (!(period >= 0) || !std::isfinite(period)) return "has a bad period";
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (!std::isfinite(nodes[i])) return "has a node that is not finite";
+    if (i > 0 && !(nodes[i] > nodes[i - 1])) return "has nodes that do not increase";
+  }
+  if (period > 0 && nodes.back() >= nodes.front() + period) return "has nodes beyond its period";
+  return {};
+}
+
+std::vector<double> spaced_nodes(double from, double to, std::size_t count, double power) {
+  std::vector<double> nodes(count, from);
+  for (std::size_t i = 1; i < count; ++i)
+    nodes[i] = from + (to - from) * std::pow(static_cast<double>(i) / static_cast<double>(count - 1), power);
+  if (count > 1) nodes.back() = to;
+  return nodes;
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,40 @@
+#include "sunbeam/table.h"
+
+namespace sunbeam {
+
+Rgb Table::transmittance(const std::array<double, 3>& x) const {
+  if (film_transmittance.empty()) return Rgb(1) - film_reflectance.interpolate(x);
+  return film_transmittance.interpolate(x);
+}
+
+bool Table::operator==(const Table& other) const {
+  for (const auto& key : material_keys())
+    if (get_text(material, key) != get_text(other.material, key)) return false;
+  return symmetry == other.symmetry && film_reflectance == other.film_reflectance &&
+         film_transmittance == other.film_transmittance && remainder == other.remainder &&
+         rest_stderr == other.rest_stderr && info == other.info;
+}
+
+RestFrame::Terms RestFrame::terms(double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const {
+  constexpr double kLargestDecay = 12;
+  const double m_i = material_.cosine_below(cos_i), m_o = material_.cosine_below(cos_o);
+  return {scale_ * t_i * t_o, material_.albedo * (kInvPi * std::exp(material_.absorption_exponent(m_i, m_o))),
+          std::exp(-std::min(material_.optical_depth() * (1 / m_i + 1 / m_o), kLargestDecay))};
+}
+
+Rgb RestFrame::decode(const Rgb& remainder, double cos_i, double cos_o, const Rgb& t_i,
+                      const Rgb& t_o) const {
+  const Terms t = terms(cos_i, cos_o, t_i, t_o);
+  return transform(t.front * (t.first_visit + t.decay * remainder),
+                   [](double x) { return std::max(0.0, x); });
+}
+
+Rgb RestFrame::encode(const Rgb& rest, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const {
+  const Terms t = terms(cos_i, cos_o, t_i, t_o);
+  Rgb remainder;
+  for (int c = 0; c < 3; ++c)
+    if (t.front[c] > 0) remainder[c] = (rest[c] / t.front[c] - t.first_visit[c]) / t.decay;
+  return remainder;
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,173 @@
+#include "sunbeam/table_bsdf.h"
+
+#include "sunbeam/core/error.h"
+#include "sunbeam/core/text.h"
+#include "sunbeam/core/warp.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr std::size_t kCurveNodes = 129;
+constexpr std::size_t kSamplingNodes = 33;  // over cos(theta_o)
+constexpr std::size_t kMarginalBins = 32;   // over cos(theta_i)
+constexpr std::size_t kAzimuthNodes = 16;   // quadrature, only where the table has azimuth
+constexpr std::size_t kNormalNodes = 24;    // quadrature over visible normals, each way
+constexpr double kSmallestCosine = 1e-4;    // sampling data near grazing are taken here
+
+Parameters checked(const Table& table, const Parameters& parameters, OutsideGrid outside) {
+  auto values = parameters.values();
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const Axis& axis = table.parameter_axis(k);
+    const double inside = std::clamp(values[k], axis.low(), axis.high());
+    if (inside != values[k] && outside == OutsideGrid::refuse)
+      throw Error("key '" + axis.name + "': found " + to_text(values[k]) + "; the table holds " +
+                  to_text(axis.low()) + " to " + to_text(axis.high()));
+    values[k] = inside;
+  }
+  return {values[0], values[1], values[2]};
+}
+
+template <class F>
+CosineCurve sampled_curve(std::size_t nodes, F f) {
+  std::vector<Rgb> values(nodes);
+  for (std::size_t i = 0; i < nodes; ++i)
+    values[i] = f(static_cast<double>(i) / static_cast<double>(nodes - 1));
+  return CosineCurve(std::move(values));
+}
+
+// The two sampling nodes around cos_o.
+Bracket sampling_bracket(double cos_o) {
+  const double x = std::clamp(cos_o, 0.0, 1.0) * static_cast<double>(kSamplingNodes - 1);
+  const auto lower = std::min(static_cast<std::size_t>(x), kSamplingNodes - 2);
+  return {lower, lower + 1, x - static_cast<double>(lower)};
+}
+
+}  // namespace
+
+TableBsdf::TableBsdf(const Table& table, const Parameters& parameters, OutsideGrid outside)
+    : material_(checked(table, parameters, outside).applied_to(table.material)),
+      symmetry_(table.symmetry),
+      frame_(material_),
+      ggx_(material_.roughness) {
+  const auto point = Parameters::of(material_).values();
+  remainder_ = table.remainder.slice(point);
+  stderr_ = table.rest_stderr.slice(point);
+  const auto film_at = [&](double c) { return std::array{point[0], point[1], c}; };
+  reflectance_ =
+      sampled_curve(kCurveNodes, [&](double c) { return table.film_reflectance.interpolate(film_at(c)); });
+  transmittance_ = sampled_curve(kCurveNodes, [&](double c) { return table.transmittance(film_at(c)); });
+
+  rest_marginals_.resize(kSamplingNodes);
+  std::vector<double> marginal(kMarginalBins);
+  std::size_t node = 0;
+  first_chance_ = sampled_curve(kSamplingNodes, [&](double c) {
+    const Vec3 wo = direction_from_cosine(std::max(c, kSmallestCosine), 0);
+    const double rest = mean(rest_albedo(wo, &marginal));
+    const double first = mean(first_albedo(wo));
+    rest_marginals_[node++] = PiecewiseConstant(marginal);
+    return Rgb(first + rest > 0 ? first / (first + rest) : 0.5);
+  });
+}
+
+Rgb TableBsdf::first(const Vec3& wo, const Vec3& wi) const {
+  if (material_.is_smooth() || wo.z <= 0 || wi.z <= 0) return {};
+  const Vec3 h = normalize(wo + wi);
+  return ggx_.reflection(wo, wi, h) * reflectance_(dot(wo, h));
+}
+
+Rgb TableBsdf::rest(const Vec3& wo, const Vec3& wi) const {
+  if (wo.z <= 0 || wi.z <= 0) return {};
+  const AngleCoordinates c = to_coordinates(symmetry_, {wo, wi});
+  const Rgb remainder = remainder_.interpolate(std::array{c.cos_i, c.phi_i, c.cos_o, c.phi_o});
+  return frame_.decode(remainder, wi.z, wo.z, transmittance_(wi.z), transmittance_(wo.z));
+}
+
+Rgb TableBsdf::rest_stderr(const Vec3& wo, const Vec3& wi) const {
+  if (wo.z <= 0 || wi.z <= 0) return {};
+  const AngleCoordinates c = to_coordinates(symmetry_, {wo, wi});
+  return stderr_.interpolate(std::array{c.cos_i, c.phi_i, c.cos_o, c.phi_o});
+}
+
+// Int f_first cos dwi by midpoints in the unit square of visible normals, which turns it into a mean of R
+// G2/G1.
+Rgb TableBsdf::first_albedo(const Vec3& wo) const {
+  if (material_.is_smooth()) return reflectance_(wo.z);
+  Rgb sum;
+  for (std::size_t i = 0; i < kNormalNodes; ++i)
+    for (std::size_t j = 0; j < kNormalNodes; ++j) {
+      const Point2 u{(static_cast<double>(i) + 0.5) / kNormalNodes,
+                     (static_cast<double>(j) + 0.5) / kNormalNodes};
+      const Vec3 h = ggx_.sample_visible(wo, u);
+      const Vec3 wi = reflect(wo, h);
+      if (wi.z > 0) sum += reflectance_(dot(wo, h)) * ggx_.g2_over_g1(wo, wi);
+    }
+  return sum / (kNormalNodes * kNormalNodes);
+}
+
+// Int f_rest cos dwi by four-point Gauss-Legendre in each bin of cos(theta_i); the bins' mean values are the
+// sampling density over that cosine.
+Rgb TableBsdf::rest_albedo(const Vec3& wo, std::vector<double>* marginal) const {
+  constexpr double kNode[] = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
+  constexpr double kWeight[] = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
+                                0.1739274225687269};
+  const auto& axes = remainder_.axes();
+  const bool has_azimuth = axes[1].size() > 1 || axes[3].size() > 1;
+  const std::size_t azimuths = has_azimuth ? kAzimuthNodes : 1;
+  Rgb total;
+  for (std::size_t bin = 0; bin < kMarginalBins; ++bin) {
+    Rgb in_bin;
+    for (std::size_t g = 0; g < 4; ++g) {
+      const double cos_i = (static_cast<double>(bin) + kNode[g]) / kMarginalBins;
+      Rgb mean_value;
+      for (std::size_t a = 0; a < azimuths; ++a) {
+        const double phi = 2 * kPi * (static_cast<double>(a) + 0.5) / static_cast<double>(azimuths);
+        mean_value += rest(wo, direction_from_cosine(cos_i, phi)) / static_cast<double>(azimuths);
+      }
+      in_bin += mean_value * (kWeight[g] * cos_i * 2 * kPi);
+    }
+    if (marginal) (*marginal)[bin] = mean(in_bin);
+    total += in_bin / kMarginalBins;
+  }
+  return total;
+}
+
+double TableBsdf::first_chance(double cos_o) const { return first_chance_(cos_o).r; }
+
+// Density over wi, 1/sr: a mixture of the two nearest nodes' marginals, uniform in azimuth.
+double TableBsdf::rest_pdf(double cos_o, double cos_i) const {
+  const Bracket at = sampling_bracket(cos_o);
+  return lerp(at.upper_weight, rest_marginals_[at.lower].pdf(cos_i), rest_marginals_[at.upper].pdf(cos_i)) /
+         (2 * kPi);
+}
+
+Vec3 TableBsdf::sample_rest(const Vec3& wo, Rng& rng) const {
+  const Bracket at = sampling_bracket(wo.z);
+  const auto& marginal = rest_marginals_[rng.uniform() < at.upper_weight ? at.upper : at.lower];
+  const double cosine = marginal.sample(rng.uniform());
+  return direction_from_cosine(cosine, 2 * kPi * rng.uniform());
+}
+
+std::optional<BsdfSample> TableBsdf::sample(const Vec3& wo, Rng& rng) const {
+  if (wo.z <= 0) return {};
+  const double chance = first_chance(wo.z);
+  Vec3 wi;
+  if (rng.uniform() < chance) {
+    if (material_.is_smooth()) return BsdfSample{{-wo.x, -wo.y, wo.z}, reflectance_(wo.z) / chance, true};
+    wi = reflect(wo, ggx_.sample_visible(wo, {rng.uniform(), rng.uniform()}));
+  } else {
+    wi = sample_rest(wo, rng);
+  }
+  const double density = mis_pdf(wo, wi);
+  if (wi.z <= 0 || density <= 0) return {};
+  return BsdfSample{wi, (first(wo, wi) + rest(wo, wi)) * (wi.z / density), false};
+}
+
+double TableBsdf::mis_pdf(const Vec3& wo, const Vec3& wi) const {
+  if (wo.z <= 0 || wi.z <= 0) return 0;
+  const double chance = first_chance(wo.z);
+  const double rest = (1 - chance) * rest_pdf(wo.z, wi.z);
+  if (material_.is_smooth()) return rest;
+  return rest + chance * ggx_.reflection_pdf(wo, normalize(wo + wi));
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,179 @@
+#include "table_parts.h"
+
+#include <algorithm>
+
+#include "sunbeam/core/error.h"
+#include "sunbeam/core/hash.h"
+#include "sunbeam/core/text.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr std::array<const char*, 3> kFilmAxes = {"film_thickness_nm", "base_ior", "cos_theta"};
+constexpr std::array<const char*, 7> kRestAxes = {
+    "film_thickness_nm", "base_ior", "absorption_per_nm", "cos_theta_i", "phi_i", "cos_theta_o", "phi_o"};
+constexpr std::array<const char*, 8> kRequiredInfo = {"recipe",    "recipe_hash", "seed",         "samples",
+                                                      "estimator", "spectrum",    "tool_version", "encoding"};
+
+// Hash over everything a file holds, so that damage shows.
+std::string parts_hash(const TableParts& parts) {
+  std::string digest;
+  for (const auto& [key, value] : parts.attributes)
+    if (key != "content_hash") digest += key + "=" + value + "\n";
+  for (const auto& array : parts.arrays) {
+    digest += array.name() + (array.precision() == Precision::half_float ? " half\n" : " float\n");
+    for (const auto& [key, value] : describe_axes(array.axes())) digest += key + "=" + value + "\n";
+    const auto values = array.values();
+    digest += content_hash({reinterpret_cast<const char*>(values.data()), values.size_bytes()}) + "\n";
+  }
+  return content_hash(digest);
+}
+
+const std::string& require(const Attributes& attributes, const std::string& key) {
+  const auto at = attributes.find(key);
+  if (at == attributes.end()) throw Error("attribute '" + key + "' is missing");
+  return at->second;
+}
+
+const NdArray* find(const TableParts& parts, const std::string& name) {
+  const auto at =
+      std::find_if(parts.arrays.begin(), parts.arrays.end(), [&](const auto& a) { return a.name() == name; });
+  return at == parts.arrays.end() ? nullptr : &*at;
+}
+
+std::string inventory(const TableParts& parts) {
+  std::string list;
+  for (const auto& array : parts.arrays) list += (list.empty() ? "" : ", ") + array.name();
+  return list.empty() ? "no array" : list;
+}
+
+template <std::size_t N>
+NdArray checked_array(const TableParts& parts, const std::string& name,
+                      const std::array<const char*, N>& axis_names) {
+  const NdArray* array = find(parts, name);
+  if (!array) throw Error("array '" + name + "' is missing (the file holds: " + inventory(parts) + ")");
+  if (array->axes().size() != N)
+    throw Error("array '" + name + "' has " + std::to_string(array->axes().size()) + " axes; expected " +
+                std::to_string(N));
+  for (std::size_t k = 0; k < N; ++k)
+    if (array->axes()[k].name != axis_names[k])
+      throw Error("array '" + name + "': axis " + std::to_string(k) + " is '" + array->axes()[k].name +
+                  "'; expected '" + axis_names[k] + "'");
+  for (const float value : array->values())
+    if (!std::isfinite(value)) throw Error("array '" + name + "' holds a value that is not finite");
+  return *array;
+}
+
+void check_axis_range(const Axis& axis, double low, double high) {
+  if (axis.nodes.front() < low || axis.nodes.back() > high)
+    throw Error("axis '" + axis.name + "' leaves " + to_text(low) + " to " + to_text(high));
+}
+
+void check_ranges(const Table& table) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Interval allowed = allowed_interval(kParameterNames[k]);
+    check_axis_range(table.parameter_axis(k), allowed.low, allowed.high);
+  }
+  const auto& axes = table.remainder.axes();
+  for (const std::size_t k : {3u, 5u}) check_axis_range(axes[k], 1e-6, 1);
+  for (const std::size_t k : {4u, 6u}) check_axis_range(axes[k], 0, 2 * kPi);
+  if (table.symmetry == Symmetry::isotropic && axes[4].size() != 1)
+    throw Error("axis 'phi_i' has " + std::to_string(axes[4].size()) + " nodes; an isotropic table has 1");
+  check_axis_range(table.film_reflectance.axes()[2], 0, 1);
+  if (table.rest_stderr.axes() != axes) throw Error("array 'rest_stderr' has other axes than 'remainder'");
+  if (!table.film_transmittance.empty() && table.film_transmittance.axes() != table.film_reflectance.axes())
+    throw Error("array 'film_transmittance' has other axes than 'film_reflectance'");
+}
+
+Table build(const TableParts& parts) {
+  const std::string& version = require(parts.attributes, "schema_version");
+  if (version != std::to_string(kTableSchemaVersion))
+    throw Error("schema version is '" + version + "'; this reader knows " +
+                std::to_string(kTableSchemaVersion));
+  if (require(parts.attributes, "content_hash") != parts_hash(parts))
+    throw Error("content does not match its hash: the file is damaged");
+  Table table;
+  for (const auto& key : material_keys())
+    set_from_text(table.material, key, require(parts.attributes, "material." + key));
+  const std::string& symmetry = require(parts.attributes, "symmetry");
+  if (symmetry != "isotropic" && symmetry != "anisotropic")
+    throw Error("symmetry is '" + symmetry + "'; allowed: isotropic, anisotropic");
+  table.symmetry = symmetry == "isotropic" ? Symmetry::isotropic : Symmetry::anisotropic;
+  table.film_reflectance = checked_array(parts, "film_reflectance", kFilmAxes);
+  if (!table.material.is_smooth())
+    table.film_transmittance = checked_array(parts, "film_transmittance", kFilmAxes);
+  table.remainder = checked_array(parts, "remainder", kRestAxes);
+  table.rest_stderr = checked_array(parts, "rest_stderr", kRestAxes);
+  check_ranges(table);
+  for (const char* key : kRequiredInfo) table.info[key] = require(parts.attributes, key);
+  for (const auto& [key, value] : parts.attributes)
+    if (key.starts_with("error.")) table.info[key] = value;
+  return table;
+}
+
+}  // namespace
+
+Attributes describe_axes(const std::vector<Axis>& axes) {
+  Attributes result;
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    const std::string prefix = "axis." + std::to_string(k) + ".";
+    result[prefix + "name"] = axes[k].name;
+    result[prefix + "unit"] = axes[k].unit;
+    result[prefix + "power"] = to_text(axes[k].power);
+    result[prefix + "period"] = to_text(axes[k].period);
+    result[prefix + "nodes"] = to_text(axes[k].nodes);
+  }
+  return result;
+}
+
+std::vector<Axis> parse_axes(const Attributes& attributes, const std::string& array_name) {
+  std::vector<Axis> axes;
+  for (std::size_t k = 0; k < NdArray::kMaxRank; ++k) {
+    const std::string prefix = "axis." + std::to_string(k) + ".";
+    if (!attributes.count(prefix + "name")) break;
+    Axis axis;
+    axis.name = require(attributes, prefix + "name");
+    axis.unit = require(attributes, prefix + "unit");
+    const auto number = [&](const std::string& text) {
+      double value = 0;
+      if (!parse_number(text, value))
+        throw Error("array '" + array_name + "': axis '" + axis.name + "' holds '" + text +
+                    "', which is no number");
+      return value;
+    };
+    axis.power = number(require(attributes, prefix + "power"));
+    axis.period = number(require(attributes, prefix + "period"));
+    for (const auto& node : split(require(attributes, prefix + "nodes"), ' '))
+      axis.nodes.push_back(number(node));
+    axes.push_back(std::move(axis));
+  }
+  return axes;
+}
+
+TableParts to_parts(const Table& table) {
+  TableParts parts;
+  parts.attributes = table.info;
+  parts.attributes["schema_version"] = std::to_string(kTableSchemaVersion);
+  parts.attributes["symmetry"] = table.symmetry == Symmetry::isotropic ? "isotropic" : "anisotropic";
+  for (const auto& key : material_keys()) parts.attributes["material." + key] = get_text(table.material, key);
+  parts.arrays = {table.film_reflectance, table.remainder, table.rest_stderr};
+  if (!table.film_transmittance.empty()) parts.arrays.push_back(table.film_transmittance);
+  // One order for every file form: both libraries list arrays in an order of their own.
+  std::sort(parts.arrays.begin(), parts.arrays.end(),
+            [](const auto& a, const auto& b) { return a.name() < b.name(); });
+  parts.attributes["content_hash"] = parts_hash(parts);
+  return parts;
+}
+
+Table from_parts(const TableParts& parts, const std::string& name) {
+  try {
+    TableParts sorted = parts;
+    std::sort(sorted.arrays.begin(), sorted.arrays.end(),
+              [](const auto& a, const auto& b) { return a.name() < b.name(); });
+    return build(sorted);
+  } catch (const Error& error) {
+    throw Error(name + ": not a usable table: " + error.what());
+  }
+}
+
+}  // namespace sunbeam

@@ -16,7 +16,9 @@
 namespace sunbeam {
 
 struct ConfigTable::Node {
-  toml::table values;
+  // Copies of toml++ nodes forget their line, so every table points into the one parsed document.
+  std::shared_ptr<const toml::table> document;
+  const toml::table* values;
   std::string file;
   std::string path;  // dotted path of this table, "" at the top
   std::set<std::string, std::less<>> asked;
@@ -28,11 +30,11 @@ struct ConfigTable::Node {
 
   const toml::node* ask(std::string_view key) {
     asked.emplace(key);
-    return values.get(key);
+    return values->get(key);
   }
 
   std::shared_ptr<Node> child(const toml::table& table, std::string child_path) {
-    children.push_back(std::make_shared<Node>(Node{table, file, std::move(child_path), {}, {}}));
+    children.push_back(std::make_shared<Node>(Node{document, &table, file, std::move(child_path), {}, {}}));
     return children.back();
   }
 };
@@ -109,21 +111,21 @@ ConfigTable ConfigTable::load(const std::string& path, const std::vector<std::st
 
 ConfigTable ConfigTable::parse(const std::string& text, const std::string& name,
                                const std::vector<std::string>& overrides) {
-  auto node = std::make_shared<Node>();
-  node->file = name;
+  auto document = std::make_shared<toml::table>();
   try {
-    node->values = toml::parse(text, name);
+    *document = toml::parse(text, name);
   } catch (const toml::parse_error& error) {
     throw Error(
         fmt::format("{}:{}: not valid TOML: {}", name, error.source().begin.line, error.description()));
   }
-  for (const auto& override_text : overrides) apply_override(node->values, override_text, name);
-  return ConfigTable(node);
+  for (const auto& override_text : overrides) apply_override(*document, override_text, name);
+  const toml::table* values = document.get();
+  return ConfigTable(std::make_shared<Node>(Node{std::move(document), values, name, "", {}, {}}));
 }
 
 void ConfigTable::fail(std::string_view key, const std::string& message) const {
-  const toml::node* node = node_->values.get(key);
-  const auto line = node ? node->source().begin.line : node_->values.source().begin.line;
+  const toml::node* node = node_->values->get(key);
+  const auto line = node ? node->source().begin.line : node_->values->source().begin.line;
   const std::string where = line ? fmt::format("{}:{}", node_->file, line) : node_->file;
   throw Error(fmt::format("{}: key '{}': {}", where, node_->full_key(key), message));
 }
@@ -213,7 +215,8 @@ Rgb ConfigTable::rgb(std::string_view key, const Range& allowed, std::optional<R
 ConfigTable ConfigTable::table(std::string_view key) const {
   const toml::node* node = node_->ask(key);
   if (node && !node->is_table()) fail(key, fmt::format("found a {}; allowed: a section", kind_of(*node)));
-  return ConfigTable(node_->child(node ? *node->as_table() : toml::table{}, node_->full_key(key)));
+  static const toml::table empty;
+  return ConfigTable(node_->child(node ? *node->as_table() : empty, node_->full_key(key)));
 }
 
 std::vector<ConfigTable> ConfigTable::tables(std::string_view key) const {
@@ -231,7 +234,7 @@ std::vector<ConfigTable> ConfigTable::tables(std::string_view key) const {
 }
 
 void ConfigTable::finish() const {
-  for (const auto& [key, value] : node_->values) {
+  for (const auto& [key, value] : *node_->values) {
     if (node_->asked.count(key.str())) continue;
     const std::string suggestion = nearest(key.str(), {node_->asked.begin(), node_->asked.end()});
     fail(key.str(), suggestion.empty()
@@ -249,7 +252,7 @@ std::string ConfigTable::resolve(const std::string& relative_path) const {
 
 std::string ConfigTable::canonical_text() const {
   std::ostringstream text;
-  text << node_->values;
+  text << *node_->values;
   return text.str();
 }
 

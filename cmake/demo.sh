@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# From a bare Debian 12 to a baked, verified table and a rendered preview: bash cmake/demo.sh
+# Options by environment: OUT=folder for the results (default out/).
+source "$(dirname "$0")/setup.sh"
+
+install_packages "${packages[@]}"
+build release -DSUNBEAM_BUILD_TESTS=OFF
+
+sunbeam=build/release/bin/sunbeam
+out=${OUT:-out}
+mkdir -p "$out/scene"
+
+say "Baking the default recipe"
+"$sunbeam" bake tables/recipes/sunbeam.toml -o "$out/skin.exr"
+
+say "Verifying the table against live evaluation"
+"$sunbeam" verify "$out/skin.exr" --json "$out/verify.json"
+
+say "Rendering a preview with the table"
+# The shipped scene with the freshly baked table in place of the small one kept in tables/.
+sed -e "s|^table = .*|table = \"../skin.exr\"|" -e "s|^recipe = .*|recipe = \"$PWD/tables/recipes/sunbeam.toml\"|" \
+  tables/scenes/sphere.toml > "$out/scene/sphere.toml"
+"$sunbeam" render "$out/scene/sphere.toml" -o "$out/sphere.exr"
+
+say "Done"
+printf 'table   %s\nreport  %s\npicture %s (linear: %s)\n' \
+  "$out/skin.exr" "$out/verify.json" "$out/sphere.png" "$out/sphere.exr"

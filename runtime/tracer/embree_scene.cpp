@@ -1,0 +1,265 @@
+#include "runtime/tracer/embree_scene.h"
+
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+
+#include <limits>
+#include <vector>
+
+#include "sunbeam/core/error.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+// About 32 roundings of a single-precision coordinate: more than building and tracing a triangle lose.
+constexpr double kRelativeOffset = 4e-6;
+constexpr double kShadowFraction = 1 - 1e-4;
+
+struct DeviceRelease {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneRelease {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+struct GeometryRelease {
+  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+using Device = std::unique_ptr<RTCDeviceTy, DeviceRelease>;
+using SceneHandle = std::unique_ptr<RTCSceneTy, SceneRelease>;
+using Geometry = std::unique_ptr<RTCGeometryTy, GeometryRelease>;
+
+// Exactly one of `sphere` and `mesh` is set. Its place in the list is its geometry id.
+struct Surface {
+  const Sphere* sphere = nullptr;
+  const Mesh* mesh = nullptr;
+  int object = -1, light = -1;
+  double offset = 0;
+};
+
+double largest_coordinate(const Vec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
+
+double offset_of(const Sphere& sphere) {
+  return kRelativeOffset * (largest_coordinate(sphere.center) + sphere.radius);
+}
+
+double offset_of(const Mesh& mesh) {
+  double extent = 0;
+  for (const Vec3& position : mesh.positions) extent = std::max(extent, largest_coordinate(position));
+  return kRelativeOffset * extent;
+}
+
+// --- spheres: Embree calls back, and the roots are found in double precision ---
+
+const Sphere& sphere_of(void* user_pointer) { return *static_cast<const Surface*>(user_pointer)->sphere; }
+
+void sphere_bounds(const RTCBoundsFunctionArguments* args) {
+  const Sphere& sphere = sphere_of(args->geometryUserPtr);
+  const double reach = sphere.radius + offset_of(sphere);  // the margin covers rounding to float
+  RTCBounds& bounds = *args->bounds_o;
+  bounds.lower_x = static_cast<float>(sphere.center.x - reach);
+  bounds.lower_y = static_cast<float>(sphere.center.y - reach);
+  bounds.lower_z = static_cast<float>(sphere.center.z - reach);
+  bounds.upper_x = static_cast<float>(sphere.center.x + reach);
+  bounds.upper_y = static_cast<float>(sphere.center.y + reach);
+  bounds.upper_z = static_cast<float>(sphere.center.z + reach);
+}
+
+// The first crossing within (tnear, tfar], or infinity.
+double sphere_distance(const Sphere& sphere, const RTCRay& ray) {
+  const Vec3 direction = {ray.dir_x, ray.dir_y, ray.dir_z};
+  const Vec3 from_center = Vec3{ray.org_x, ray.org_y, ray.org_z} - sphere.center;
+  const double inverse = 1 / dot(direction, direction);
+  const double middle = -dot(from_center, direction) * inverse;
+  const Vec3 closest = from_center + middle * direction;
+  const double discriminant = (square(sphere.radius) - dot(closest, closest)) * inverse;
+  if (!(discriminant >= 0)) return kInfinity;
+  const double half_chord = std::sqrt(discriminant);
+  for (const double t : {middle - half_chord, middle + half_chord})
+    if (t > ray.tnear && t <= ray.tfar) return t;
+  return kInfinity;
+}
+
+// Embree calls these with one ray at a time, because only single rays are traced here.
+void sphere_intersect(const RTCIntersectFunctionNArguments* args) {
+  if (!args->valid[0]) return;
+  auto& [ray, hit] = *reinterpret_cast<RTCRayHit*>(args->rayhit);
+  const double distance = sphere_distance(sphere_of(args->geometryUserPtr), ray);
+  if (distance >= kInfinity) return;
+  ray.tfar = static_cast<float>(distance);
+  hit.u = hit.v = 0;
+  hit.Ng_x = hit.Ng_y = hit.Ng_z = 0;
+  hit.primID = args->primID;
+  hit.geomID = args->geomID;
+  hit.instID[0] = args->context->instID[0];
+}
+
+void sphere_occluded(const RTCOccludedFunctionNArguments* args) {
+  if (!args->valid[0]) return;
+  auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
+  if (sphere_distance(sphere_of(args->geometryUserPtr), ray) < kInfinity) ray.tfar = -kInfinity;
+}
+
+// --- geometry in Embree's memory ---
+
+Geometry make_sphere(RTCDevice device, Surface& surface) {
+  Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
+  rtcSetGeometryUserPrimitiveCount(geometry.get(), 1);
+  rtcSetGeometryUserData(geometry.get(), &surface);
+  rtcSetGeometryBoundsFunction(geometry.get(), sphere_bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry.get(), sphere_intersect);
+  rtcSetGeometryOccludedFunction(geometry.get(), sphere_occluded);
+  return geometry;
+}
+
+template <class T>
+T* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t count) {
+  void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, 3 * sizeof(T), count);
+  if (!buffer) throw Error(fmt::format("Embree: no memory for a mesh buffer of {} entries", count));
+  return static_cast<T*>(buffer);
+}
+
+Geometry make_mesh(RTCDevice device, const Mesh& mesh) {
+  Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+  float* vertex =
+      new_buffer<float>(geometry.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.positions.size());
+  for (const Vec3& position : mesh.positions)
+    for (const double coordinate : {position.x, position.y, position.z})
+      *vertex++ = static_cast<float>(coordinate);
+  auto* index =
+      new_buffer<unsigned>(geometry.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles.size());
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t corner : triangle) *index++ = corner;
+  return geometry;
+}
+
+// --- hits ---
+
+struct Point {
+  Vec3 position, geometric_normal, shading_normal;
+};
+
+// Embree's distance is in single precision: the point is put back onto the sphere.
+Point sphere_point(const Sphere& sphere, const Vec3& near_surface) {
+  const Vec3 normal = normalize(near_surface - sphere.center);
+  return {sphere.center + sphere.radius * normal, normal, normal};
+}
+
+Point triangle_point(const Mesh& mesh, const RTCHit& hit) {
+  const auto [i, j, k] = mesh.triangles[hit.primID];
+  const double u = hit.u, v = hit.v;
+  const auto blend = [&](const std::vector<Vec3>& values) {
+    return (1 - u - v) * values[i] + u * values[j] + v * values[k];
+  };
+  const Vec3 winding = cross(mesh.positions[j] - mesh.positions[i], mesh.positions[k] - mesh.positions[i]);
+  const Vec3 geometric = normalize(winding);
+  Vec3 shading = mesh.normals.empty() ? geometric : blend(mesh.normals);
+  if (dot(shading, geometric) < 0) shading = -shading;
+  const double size = length(shading);
+  return {blend(mesh.positions), geometric, size > 0 ? shading / size : geometric};
+}
+
+RTCRay to_embree(const Ray& ray, float distance) {
+  RTCRay result{};
+  result.org_x = static_cast<float>(ray.origin.x);
+  result.org_y = static_cast<float>(ray.origin.y);
+  result.org_z = static_cast<float>(ray.origin.z);
+  result.dir_x = static_cast<float>(ray.direction.x);
+  result.dir_y = static_cast<float>(ray.direction.y);
+  result.dir_z = static_cast<float>(ray.direction.z);
+  result.tnear = 0;
+  result.tfar = distance;
+  result.mask = ~0u;
+  return result;
+}
+
+}  // namespace
+
+struct EmbreeScene::Impl {
+  std::string error;  // the first message of the device; set before it, for its callback writes here
+  std::vector<Mesh> light_meshes;
+  std::vector<Surface> surfaces;
+  Device device;
+  SceneHandle scene;
+
+  void collect(const Scene& source);
+  void build();
+  void require_no_error() const {
+    if (!error.empty()) throw Error("Embree: " + error);
+  }
+};
+
+void EmbreeScene::Impl::collect(const Scene& source) {
+  light_meshes.reserve(source.quad_lights.size());  // surfaces point into it
+  for (const QuadLight& light : source.quad_lights) {
+    light_meshes.push_back(quad_mesh(light.corner, light.edge_u, light.edge_v));
+    surfaces.push_back({.mesh = &light_meshes.back(), .light = static_cast<int>(light_meshes.size()) - 1});
+  }
+  for (std::size_t i = 0; i < source.objects.size(); ++i) {
+    const auto& shape = source.objects[i].shape;
+    surfaces.push_back({.sphere = std::get_if<Sphere>(&shape),
+                        .mesh = std::get_if<Mesh>(&shape),
+                        .object = static_cast<int>(i)});
+  }
+  for (Surface& surface : surfaces)
+    surface.offset = surface.sphere ? offset_of(*surface.sphere) : offset_of(*surface.mesh);
+}
+
+void EmbreeScene::Impl::build() {
+  device.reset(rtcNewDevice(nullptr));
+  if (!device)
+    throw Error(
+        fmt::format("Embree: no device, error code {}", static_cast<int>(rtcGetDeviceError(nullptr))));
+  const auto remember = [](void* first_error, RTCError code, const char* message) {
+    auto& text = *static_cast<std::string*>(first_error);
+    if (text.empty())
+      text = fmt::format("error code {}: {}", static_cast<int>(code), message ? message : "no message");
+  };
+  rtcSetDeviceErrorFunction(device.get(), remember, &error);
+  scene.reset(rtcNewScene(device.get()));
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);  // no cracks between triangles
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const Geometry geometry = surfaces[i].sphere ? make_sphere(device.get(), surfaces[i])
+                                                 : make_mesh(device.get(), *surfaces[i].mesh);
+    require_no_error();
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometryByID(scene.get(), geometry.get(), static_cast<unsigned>(i));
+  }
+  rtcCommitScene(scene.get());
+  require_no_error();
+}
+
+EmbreeScene::EmbreeScene(const Scene& scene) : impl_(std::make_unique<Impl>()) {
+  impl_->collect(scene);
+  impl_->build();
+}
+
+EmbreeScene::~EmbreeScene() = default;
+
+std::optional<SurfaceHit> EmbreeScene::intersect(const Ray& ray) const {
+  RTCRayHit query{to_embree(ray, kInfinity), {}};
+  query.hit.geomID = query.hit.primID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(impl_->scene.get(), &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+
+  const Surface& surface = impl_->surfaces[query.hit.geomID];
+  const Point point =
+      surface.sphere
+          ? sphere_point(*surface.sphere, ray.origin + static_cast<double>(query.ray.tfar) * ray.direction)
+          : triangle_point(*surface.mesh, query.hit);
+  return SurfaceHit{
+      point.position, point.geometric_normal, point.shading_normal, length(point.position - ray.origin),
+      surface.offset, surface.object,         surface.light};
+}
+
+bool EmbreeScene::occluded(const Ray& ray, double distance) const {
+  RTCRay query = to_embree(ray, static_cast<float>(distance * kShadowFraction));
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(impl_->scene.get(), &context, &query);
+  return query.tfar < 0;
+}
+
+}  // namespace sunbeam

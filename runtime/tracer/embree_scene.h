@@ -1,0 +1,42 @@
+// Visibility and nearest hits through Embree. No other file of Sunbeam includes Embree.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "runtime/tracer/ray.h"
+#include "runtime/tracer/scene.h"
+
+namespace sunbeam {
+
+struct SurfaceHit {
+  Vec3 position;          // on the surface to double precision (spheres) or to that of its vertices (meshes)
+  Vec3 geometric_normal;  // unit; out of a sphere, by the winding of a triangle
+  Vec3 shading_normal;    // unit, interpolated, on the side of the geometric normal
+  double distance;        // from the origin of the ray
+  double offset;          // a ray that starts this far above `position` does not hit the same surface again
+  int object;             // index into Scene::objects, -1 for a light
+  int light;              // index into Scene::quad_lights, -1 for an object
+};
+
+class EmbreeScene {
+ public:
+  // Builds the search structure. `scene` must outlive this. Throws Error with Embree's message if it fails.
+  explicit EmbreeScene(const Scene& scene);
+  ~EmbreeScene();
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  // The nearest hit, on either side of a surface. Thread-safe.
+  std::optional<SurfaceHit> intersect(const Ray& ray) const;
+
+  // Whether anything lies between the origin and a point `distance` away (infinite: anywhere). The last 0.01
+  // % of the way is left out, so that the light at the end does not shadow itself. Thread-safe.
+  bool occluded(const Ray& ray, double distance) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sunbeam

@@ -1,0 +1,54 @@
+#include "runtime/tracer/mesh.h"
+
+namespace sunbeam {
+namespace {
+
+Vec3 rotate_xyz(const Vec3& v, const Vec3& degrees) {
+  const Vec3 angle = degrees * (kPi / 180);
+  const double cx = std::cos(angle.x), sx = std::sin(angle.x);
+  const double cy = std::cos(angle.y), sy = std::sin(angle.y);
+  const double cz = std::cos(angle.z), sz = std::sin(angle.z);
+  const Vec3 about_x = {v.x, cx * v.y - sx * v.z, sx * v.y + cx * v.z};
+  const Vec3 about_y = {cy * about_x.x + sy * about_x.z, about_x.y, cy * about_x.z - sy * about_x.x};
+  return {cz * about_y.x - sz * about_y.y, sz * about_y.x + cz * about_y.y, about_y.z};
+}
+
+// Two triangles for each cell of a grid that closes on itself both ways.
+void connect_wrapped_grid(Mesh& mesh, std::uint32_t columns, std::uint32_t rows) {
+  for (std::uint32_t i = 0; i < columns; ++i)
+    for (std::uint32_t j = 0; j < rows; ++j) {
+      const std::uint32_t next_i = (i + 1) % columns, next_j = (j + 1) % rows;
+      const std::uint32_t a = i * rows + j, b = next_i * rows + j;
+      const std::uint32_t c = next_i * rows + next_j, d = i * rows + next_j;
+      mesh.triangles.push_back({a, b, c});
+      mesh.triangles.push_back({a, c, d});
+    }
+}
+
+}  // namespace
+
+Mesh quad_mesh(const Vec3& corner, const Vec3& edge_u, const Vec3& edge_v) {
+  Mesh mesh;
+  mesh.positions = {corner, corner + edge_u, corner + edge_u + edge_v, corner + edge_v};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return mesh;
+}
+
+Mesh torus_mesh(const Vec3& center, double major_radius, double minor_radius, const Vec3& rotate_deg,
+                int resolution) {
+  Mesh mesh;
+  const int around_tube = resolution / 2;
+  for (int i = 0; i < resolution; ++i)
+    for (int j = 0; j < around_tube; ++j) {
+      const double phi = 2 * kPi * i / resolution, psi = 2 * kPi * j / around_tube;
+      const Vec3 outward = {std::cos(phi), std::sin(phi), 0};
+      const Vec3 normal = outward * std::cos(psi) + Vec3{0, 0, std::sin(psi)};
+      const Vec3 position = outward * major_radius + normal * minor_radius;
+      mesh.positions.push_back(center + rotate_xyz(position, rotate_deg));
+      mesh.normals.push_back(rotate_xyz(normal, rotate_deg));
+    }
+  connect_wrapped_grid(mesh, static_cast<std::uint32_t>(resolution), static_cast<std::uint32_t>(around_tube));
+  return mesh;
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,107 @@
+#include "runtime/tracer/path.h"
+
+#include <limits>
+
+#include "sunbeam/core/frame.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr int kFreeBounces = 3;  // before Russian roulette
+
+// MIS weight of the technique with density `pdf` against one other.
+double power_heuristic(double pdf, double other) {
+  return pdf <= 0 ? 0 : 1 / (1 + square(other / pdf));  // as a ratio, for squares overflow
+}
+
+// Interpolation can turn a shading normal away from the viewer; then it is bent until it just faces wo again.
+Vec3 bend_towards(const Vec3& normal, const Vec3& wo) {
+  constexpr double kGrazing = 1e-3;
+  const double cosine = dot(normal, wo);
+  return cosine >= kGrazing ? normal : normalize(normal + (kGrazing - cosine) * wo);
+}
+
+bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+}  // namespace
+
+struct PathTracer::Vertex {
+  Vec3 position, geometric_normal;  // the normal on the viewer's side
+  Frame frame;                      // shading frame
+  Vec3 wo;                          // local
+  double offset;
+  const Bsdf* bsdf;
+
+  bool is_above(const Vec3& world) const { return dot(world, geometric_normal) > 0; }
+  Ray leave(const Vec3& world) const { return {position + offset * geometric_normal, world}; }
+};
+
+PathTracer::PathTracer(const Scene& scene, const EmbreeScene& geometry, const Lights& lights,
+                       std::span<const Bsdf* const> bsdfs)
+    : scene_(scene), geometry_(geometry), lights_(lights), bsdfs_(bsdfs) {}
+
+PathTracer::Vertex PathTracer::make_vertex(const Ray& ray, const SurfaceHit& hit) const {
+  const Vec3 wo = -ray.direction;
+  const double side = dot(wo, hit.geometric_normal) < 0 ? -1 : 1;
+  const Frame frame = Frame::from_normal(bend_towards(side * hit.shading_normal, wo));
+  const int material = scene_.objects[static_cast<std::size_t>(hit.object)].material;
+  return {hit.position, side * hit.geometric_normal,
+          frame,        frame.to_local(wo),
+          hit.offset,   bsdfs_[static_cast<std::size_t>(material)]};
+}
+
+// What the end of `ray` emits, weighted by MIS if the ray was drawn with density `bsdf_pdf`. Without one
+// (from the camera or from a Dirac lobe) no light sample could have found the same path, and all of it
+// counts.
+Rgb PathTracer::emission(const Ray& ray, const MaybeHit& hit, std::optional<double> bsdf_pdf) const {
+  if (hit && hit->light < 0) return {};
+  const Emission light =
+      hit ? lights_.quad(hit->light, ray.direction, hit->distance) : lights_.environment(ray.direction);
+  if (!bsdf_pdf || light.pdf <= 0) return light.radiance;
+  return light.radiance * power_heuristic(*bsdf_pdf, light.pdf);
+}
+
+Rgb PathTracer::direct_light(const Vertex& vertex, Rng& rng, PathCounts& counts) const {
+  const auto light = lights_.sample(vertex.position, rng);
+  if (!light || !vertex.is_above(light->wi)) return {};
+  const Vec3 wi = vertex.frame.to_local(light->wi);
+  if (wi.z <= 0) return {};
+  const Rgb f = vertex.bsdf->eval(vertex.wo, wi, rng);
+  if (is_black(f)) return {};
+  ++counts.rays;
+  if (geometry_.occluded(vertex.leave(light->wi), light->distance)) return {};
+  const double weight =
+      light->is_dirac ? 1 : power_heuristic(light->pdf, vertex.bsdf->mis_pdf(vertex.wo, wi));
+  return f * light->radiance * (wi.z * weight / light->pdf);
+}
+
+Rgb PathTracer::radiance(Ray ray, Rng& rng, PathCounts& counts) const {
+  Rgb result, throughput(1);
+  std::optional<double> bsdf_pdf;
+  for (int bounce = 0;; ++bounce) {
+    ++counts.rays;
+    const MaybeHit hit = geometry_.intersect(ray);
+    result += throughput * emission(ray, hit, bsdf_pdf);
+    if (!hit || hit->light >= 0 || bounce == scene_.render.max_bounces) return result;
+
+    ++counts.vertices;
+    const Vertex vertex = make_vertex(ray, *hit);
+    result += throughput * direct_light(vertex, rng, counts);
+    const auto sample = vertex.bsdf->sample(vertex.wo, rng);
+    if (!sample) return result;
+    throughput *= sample->throughput;
+    if (!is_finite(sample->wi) || !is_finite(throughput))
+      return Rgb(std::numeric_limits<double>::quiet_NaN());
+    const Vec3 wi = vertex.frame.to_world(sample->wi);
+    if (sample->wi.z <= 0 || !vertex.is_above(wi)) return result;
+    if (bounce >= kFreeBounces) {
+      const double survival = std::min(1.0, max_component(throughput));
+      if (rng.uniform() >= survival) return result;
+      throughput *= 1 / survival;
+    }
+    bsdf_pdf = sample->is_dirac ? std::nullopt : std::optional(vertex.bsdf->mis_pdf(vertex.wo, sample->wi));
+    ray = vertex.leave(wi);
+  }
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,49 @@
+// The path integrator: light sampling and BSDF sampling at every vertex, combined by the power heuristic.
+//
+// Surfaces are two-sided: at each hit the normals are flipped towards the viewer, so a BSDF always sees wo
+// above the surface. Light must arrive above the shading AND above the geometric surface, hence none leaks
+// through smooth-shaded meshes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "runtime/tracer/embree_scene.h"
+#include "runtime/tracer/lights.h"
+#include "runtime/tracer/ray.h"
+#include "sunbeam/bsdf.h"
+#include "sunbeam/core/rng.h"
+
+namespace sunbeam {
+
+struct PathCounts {
+  std::uint64_t rays = 0;      // towards hits and towards lights
+  std::uint64_t vertices = 0;  // surface points where a BSDF was asked
+};
+
+class PathTracer {
+ public:
+  // bsdfs[i] belongs to scene.materials[i]. Everything passed must outlive this.
+  PathTracer(const Scene& scene, const EmbreeScene& geometry, const Lights& lights,
+             std::span<const Bsdf* const> bsdfs);
+
+  // One estimate of the radiance that arrives along `ray`; not finite if a BSDF returned something not
+  // finite.
+  Rgb radiance(Ray ray, Rng& rng, PathCounts& counts) const;
+
+ private:
+  struct Vertex;
+  using MaybeHit = std::optional<SurfaceHit>;
+
+  Rgb emission(const Ray& ray, const MaybeHit& hit, std::optional<double> bsdf_pdf) const;
+  Rgb direct_light(const Vertex& vertex, Rng& rng, PathCounts& counts) const;
+  Vertex make_vertex(const Ray& ray, const SurfaceHit& hit) const;
+
+  const Scene& scene_;
+  const EmbreeScene& geometry_;
+  const Lights& lights_;
+  std::span<const Bsdf* const> bsdfs_;
+};
+
+}  // namespace sunbeam

@@ -1,0 +1,84 @@
+// A scene, read from TOML and complete in memory: meshes are tessellated and pictures loaded. World space has
+// z up; lengths are in one arbitrary unit. Whoever builds a Scene by hand must keep to the same limits.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "runtime/config/config.h"
+#include "runtime/tracer/image.h"
+#include "runtime/tracer/mesh.h"
+#include "sunbeam/core/vec.h"
+
+namespace sunbeam {
+
+struct CameraView {
+  Vec3 position, look_at;
+  Vec3 up{0, 0, 1};     // not parallel to the view
+  double fov_deg = 40;  // VERTICAL angle of view, (0, 180)
+};
+
+// What RenderSettings falls back to.
+struct RenderDefaults {
+  int width = 640, height = 360;
+  int spp = 64;         // samples per pixel
+  int max_bounces = 8;  // scattering events of a path; 1 = direct light only
+};
+
+// Radiance from infinity. `map` is a lat-long picture seen from inside, unmirrored: rows run from +z (top) to
+// -z (bottom), the centre column looks along +x, the left quarter along +y. Texels are constant, not blended.
+struct EnvironmentSource {
+  Rgb color;  // used if `map` is empty
+  Image map;  // finite, >= 0, scale applied
+};
+
+// A parallelogram that emits on the side of cross(edge_u, edge_v) only; the other side is black and opaque.
+struct QuadLight {
+  Vec3 corner, edge_u, edge_v;
+  Rgb radiance;
+};
+
+struct PointLight {
+  Vec3 position;
+  Rgb intensity;  // W/sr
+};
+
+struct SceneMaterial {
+  enum class Type { skin, diffuse };
+  std::string name;
+  Type type = Type::diffuse;
+  Rgb albedo{0.5};  // type diffuse only
+  // Type skin only: what replaces the value of the recipe.
+  std::optional<double> film_thickness_nm, base_ior, absorption_per_nm;
+};
+
+struct Sphere {
+  Vec3 center;
+  double radius = 1;
+};
+
+struct SceneObject {
+  std::variant<Sphere, Mesh> shape;
+  int material = 0;  // index into Scene::materials
+};
+
+struct Scene {
+  std::string recipe, table;  // paths, relative to the scene file already resolved; "" if not named
+  Rgb diffuse_albedo{0.5};
+  CameraView camera;
+  RenderDefaults render;
+  EnvironmentSource environment;
+  std::vector<QuadLight> quad_lights;
+  std::vector<PointLight> point_lights;
+  std::vector<SceneMaterial> materials;
+  std::vector<SceneObject> objects;
+};
+
+// Throws Error for anything missing, out of range, unknown or degenerate, in the file or in what it names.
+// `recipe` and `table` are resolved but not opened.
+Scene read_scene(const ConfigTable& config);
+Scene load_scene(const std::string& path);
+
+}  // namespace sunbeam

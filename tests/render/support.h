@@ -1,0 +1,105 @@
+// What the tracer tests share: scenes from text, scratch folders and BSDFs with one property each.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "runtime/tracer/render.h"
+#include "runtime/tracer/scene.h"
+#include "sunbeam/core/error.h"
+#include "sunbeam/lambert.h"
+
+namespace sunbeam {
+
+inline Scene scene_from(const std::string& text) { return read_scene(ConfigTable::parse(text, "test.toml")); }
+
+// The message of the Error that `action` throws; "" if it throws none.
+template <class Action>
+std::string error_of(Action action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// A folder that is empty at first and gone at the end.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "sunbeam_render_XXXXXX").string();
+    if (!mkdtemp(pattern.data())) throw Error("cannot make a scratch folder");
+    path_ = pattern;
+  }
+  ~ScratchFolder() { std::filesystem::remove_all(path_); }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(file(name)) << text;
+    return file(name);
+  }
+  std::size_t file_count() const {
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// A perfect mirror of reflectance `albedo`.
+class Mirror final : public Bsdf {
+ public:
+  explicit Mirror(double albedo) : albedo_(albedo) {}
+  Rgb eval(const Vec3&, const Vec3&, Rng&) const override { return {}; }
+  std::optional<BsdfSample> sample(const Vec3& wo, Rng&) const override {
+    return BsdfSample{{-wo.x, -wo.y, wo.z}, Rgb(albedo_), true};
+  }
+  double pdf(const Vec3&, const Vec3&, Rng&) const override { return 0; }
+  double mis_pdf(const Vec3&, const Vec3&) const override { return 0; }
+
+ private:
+  double albedo_;
+};
+
+// Lambert with another MIS density: huge, and only BSDF samples count; tiny, and only light samples do.
+class LambertWithMisPdf final : public Bsdf {
+ public:
+  LambertWithMisPdf(double albedo, double mis_pdf) : lambert_(Rgb(albedo)), mis_pdf_(mis_pdf) {}
+  Rgb eval(const Vec3& wo, const Vec3& wi, Rng& rng) const override { return lambert_.eval(wo, wi, rng); }
+  std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override {
+    return lambert_.sample(wo, rng);
+  }
+  double pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const override { return lambert_.pdf(wo, wi, rng); }
+  double mis_pdf(const Vec3&, const Vec3&) const override { return mis_pdf_; }
+
+ private:
+  Lambert lambert_;
+  double mis_pdf_;
+};
+
+inline RenderResult render_with(const Scene& scene, const Bsdf& bsdf, const RenderSettings& settings) {
+  return render(scene, std::vector<const Bsdf*>(scene.materials.size(), &bsdf), settings);
+}
+
+// Mean of all pixels and channels of a grey picture, and the standard error of that mean. Pixels are
+// independent; the channels of one are equal.
+struct Estimate {
+  double mean = 0, standard_error = 0;
+};
+inline Estimate grey_estimate(const RenderResult& result) {
+  double sum = 0, variance = 0;
+  for (const float value : result.mean.rgb) sum += value;
+  for (const float value : result.variance.rgb) variance += value;
+  const double pixels = static_cast<double>(result.mean.rgb.size()) / 3;
+  return {sum / (3 * pixels), std::sqrt(variance / 3) / pixels};
+}
+
+}  // namespace sunbeam

@@ -17,7 +17,7 @@ Axis film_thickness_axis(const Recipe& recipe) {
   const double phase = 4 * kPi * recipe.material.film_ior * span / kRgb3WavelengthsNm.b;
   if (axis.size() > 1)
     axis.nodes =
-        spaced_nodes(axis.low(), axis.high(), static_cast<std::size_t>(std::ceil(phase / kPhaseStep)) + 2, 1);
+        spaced_nodes(axis.low(), axis.high(), static_cast<std::size_t>(std::ceil(phase / kPhaseStep)) + 2);
   return axis;
 }
 
@@ -26,10 +26,9 @@ Axis film_ior_axis(const Recipe& recipe) {
   Axis axis = coarse;
   axis.nodes = {coarse.nodes.front()};
   for (std::size_t i = 1; i < coarse.size(); ++i) {
-    const double u0 = coarse.coordinate(coarse.nodes[i - 1]), u1 = coarse.coordinate(coarse.nodes[i]);
-    for (std::size_t k = 1; k < kIorRefinement; ++k)
-      axis.nodes.push_back(coarse.low() + square(lerp(static_cast<double>(k) / kIorRefinement, u0, u1)));
-    axis.nodes.push_back(coarse.nodes[i]);
+    const auto fine =
+        spaced_nodes(coarse.nodes[i - 1], coarse.nodes[i], kIorRefinement + 1, coarse.power, coarse.origin);
+    axis.nodes.insert(axis.nodes.end(), fine.begin() + 1, fine.end());
   }
   return axis;
 }
@@ -72,7 +71,7 @@ Rgb weighted_transmittance(const NdArray& reflectance, std::size_t first_cell,
 
 void bake_film(const Recipe& recipe, Table& table) {
   const Axis thickness = film_thickness_axis(recipe), ior = film_ior_axis(recipe);
-  const Axis cosine{"cos_theta", "1", spaced_nodes(0, 1, kCosines, 1), 1, 0};
+  const Axis cosine{"cos_theta", "1", spaced_nodes(0, 1, kCosines)};
   const std::vector<Axis> axes = {thickness, ior, cosine};
   table.film_reflectance = NdArray("film_reflectance", axes, Precision::single_float);
   if (!recipe.material.is_smooth())

@@ -53,15 +53,20 @@ Material read_material(const ConfigTable& config) {
   return m;
 }
 
-// How the rest depends on a parameter near the axis' first node: like the square root of the IOR's distance
-// from index match, and ever more slowly with absorption.
-struct AxisStyle {
-  const char* unit;
-  double power;
-};
-constexpr AxisStyle kAxisStyles[] = {{"nm", 1}, {"1", 2}, {"1/nm", 3}};
+// The axes without nodes. Their coordinates follow how the rest depends on a parameter: like the square root
+// of the base IOR's distance from index match, and ever more slowly with absorption.
+std::array<Axis, 3> bare_axes(const Material& material) {
+  Axis thickness{kParameterNames[0], "nm", {}};
+  Axis base_ior{kParameterNames[1], "1", {}, 2, 0, material.exterior_ior};
+  Axis absorption{kParameterNames[2], "1/nm", {}, 3};
+  return {thickness, base_ior, absorption};
+}
 
-std::vector<double> read_nodes(const ConfigTable& grid, const std::string& key, double power) {
+// A base thinner than the exterior has no square root at its first node.
+double power_above(const Axis& axis, double first) { return first < axis.origin ? 1 : axis.power; }
+
+std::vector<double> read_nodes(const ConfigTable& grid, const Axis& axis) {
+  const std::string& key = axis.name;
   const Range allowed = range_of(key);
   if (!grid.is_table(key)) {
     const auto nodes = grid.numbers(key, allowed);
@@ -75,15 +80,15 @@ std::vector<double> read_nodes(const ConfigTable& grid, const std::string& key, 
   const double to = range.number("to", {from, allowed.high});
   const int count = range.integer("count", 1, 4096);
   if ((count == 1) != (from == to)) range.fail("count", "one node needs from = to, several need from < to");
-  return spaced_nodes(from, to, static_cast<std::size_t>(count), power);
+  return spaced_nodes(from, to, static_cast<std::size_t>(count), power_above(axis, from), axis.origin);
 }
 
 std::vector<Axis> read_grid(const ConfigTable& grid, const Material& material) {
   const auto defaults = Parameters::of(material).values();
   std::vector<Axis> axes;
-  for (std::size_t k = 0; k < kParameterNames.size(); ++k) {
-    Axis axis{kParameterNames[k], kAxisStyles[k].unit, {defaults[k]}, kAxisStyles[k].power, 0};
-    if (grid.has(axis.name)) axis.nodes = read_nodes(grid, axis.name, axis.power);
+  for (Axis axis : bare_axes(material)) {
+    axis.nodes = grid.has(axis.name) ? read_nodes(grid, axis) : std::vector{defaults[axes.size()]};
+    axis.power = power_above(axis, axis.nodes.front());
     axes.push_back(std::move(axis));
   }
   return axes;

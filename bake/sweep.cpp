@@ -22,12 +22,12 @@ constexpr double kLowestCosine = 0.01;
 
 std::vector<Axis> rest_axes(const Recipe& recipe) {
   std::vector<Axis> axes = recipe.grid;
-  const auto cosines = spaced_nodes(kLowestCosine, 1, static_cast<std::size_t>(recipe.table.cosines), 1);
-  const auto azimuths = spaced_nodes(0, kPi, static_cast<std::size_t>(recipe.table.azimuths), 1);
-  axes.push_back({"cos_theta_i", "1", cosines, 1, 0});
-  axes.push_back({"phi_i", "rad", {0}, 1, 0});
-  axes.push_back({"cos_theta_o", "1", cosines, 1, 0});
-  axes.push_back({"phi_o", "rad", azimuths, 1, 0});
+  const auto cosines = spaced_nodes(kLowestCosine, 1, static_cast<std::size_t>(recipe.table.cosines));
+  const auto azimuths = spaced_nodes(0, kPi, static_cast<std::size_t>(recipe.table.azimuths));
+  axes.push_back({"cos_theta_i", "1", cosines});
+  axes.push_back({"phi_i", "rad", {0}});
+  axes.push_back({"cos_theta_o", "1", cosines});
+  axes.push_back({"phi_o", "rad", azimuths});
   return axes;
 }
 

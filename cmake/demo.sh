@@ -8,7 +8,7 @@ build release -DSUNBEAM_BUILD_TESTS=OFF
 
 sunbeam=build/release/bin/sunbeam
 out=${OUT:-out}
-mkdir -p "$out/scene"
+mkdir -p "$out"
 
 say "Baking the default recipe"
 "$sunbeam" bake tables/recipes/sunbeam.toml -o "$out/skin.exr"
@@ -17,10 +17,7 @@ say "Verifying the table against live evaluation"
 "$sunbeam" verify "$out/skin.exr" --json "$out/verify.json"
 
 say "Rendering a preview with the table"
-# The shipped scene with the freshly baked table in place of the small one kept in tables/.
-sed -e "s|^table = .*|table = \"../skin.exr\"|" -e "s|^recipe = .*|recipe = \"$PWD/tables/recipes/sunbeam.toml\"|" \
-  tables/scenes/sphere.toml > "$out/scene/sphere.toml"
-"$sunbeam" render "$out/scene/sphere.toml" -o "$out/sphere.exr"
+"$sunbeam" render tables/scenes/sphere.toml --table "$out/skin.exr" -o "$out/sphere.exr"
 
 say "Done"
 printf 'table   %s\nreport  %s\npicture %s (linear: %s)\n' \

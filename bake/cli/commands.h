@@ -41,6 +41,7 @@ int run_verify(const VerifyOptions& options);
 
 struct RenderOptions {
   std::string scene, output, stats;
+  std::string table;  // in place of the scene's own
   std::string material = "table";
   std::string size;
   int samples_per_pixel = 0;  // 0: as the scene says

@@ -85,6 +85,7 @@ void add_render(CLI::App& app, RenderOptions& o, int& exit_code) {
   command->add_option("-o,--output", o.output, "Image to write (.exr); a .png goes beside it")->required();
   command->add_option("--material", o.material, "Skin material")
       ->check(CLI::IsMember({"table", "live", "diffuse"}));
+  command->add_option("--table", o.table, "Table to use in place of the scene's own");
   command->add_option("--size", o.size, "WIDTHxHEIGHT in pixels");
   command->add_option("--spp", o.samples_per_pixel, "Samples per pixel")->check(CLI::Range(1, 1 << 24));
   add_threads(command, o.threads);

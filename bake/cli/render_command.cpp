@@ -130,7 +130,8 @@ int run_render(const RenderOptions& options) {
     settings.width = size.width;
     settings.height = size.height;
   }
-  const Scene scene = load_scene(options.scene);
+  Scene scene = load_scene(options.scene);
+  if (!options.table.empty()) scene.table = options.table;
   const Materials materials(scene, options.scene, options.material);
   const std::string png = std::filesystem::path(options.output).replace_extension(".png").string();
   for (const auto& path : {options.output, png}) require_writable(path);

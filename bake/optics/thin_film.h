@@ -32,9 +32,10 @@ struct FilmPower {
 // wavelengths in nm at once. R = 1 where exterior_ior * sin >= base_ior.
 FilmPower airy(const ThinFilm& film, double cos_exterior, const Rgb& wavelengths_nm);
 
-// Squared cosine on the far side by Snell's law; negative under total reflection.
+// Squared cosine on the far side by Snell's law; negative under total reflection. Arranged so that equal
+// media keep every digit at grazing.
 inline double refracted_cosine_squared(double ior_from, double ior_to, double cos_from) {
-  return 1 - square(ior_from / ior_to) * (1 - square(cos_from));
+  return ((ior_to - ior_from) * (ior_to + ior_from) + square(ior_from * cos_from)) / square(ior_to);
 }
 
 }  // namespace sunbeam

@@ -6,8 +6,8 @@
 namespace sunbeam {
 
 double Axis::coordinate(double x) const {
-  const double offset = std::max(0.0, x - nodes.front());
-  if (power == 1) return offset;
+  if (power == 1) return x - origin;
+  const double offset = std::max(0.0, x - origin);
   if (power == 2) return std::sqrt(offset);
   if (power == 3) return std::cbrt(offset);
   return std::pow(offset, 1 / power);
@@ -32,6 +32,8 @@ std::string Axis::defect() const {
   if (nodes.empty()) return "has no nodes";
   if (!(power >= 1 && power <= 8)) return "has a power outside 1 to 8";
   if (!(period >= 0) || !std::isfinite(period)) return "has a bad period";
+  if (!std::isfinite(origin) || (power != 1 && !(nodes.front() >= origin)))
+    return "has a node below its origin";
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (!std::isfinite(nodes[i])) return "has a node that is not finite";
     if (i > 0 && !(nodes[i] > nodes[i - 1])) return "has nodes that do not increase";
@@ -40,10 +42,12 @@ std::string Axis::defect() const {
   return {};
 }
 
-std::vector<double> spaced_nodes(double from, double to, std::size_t count, double power) {
+std::vector<double> spaced_nodes(double from, double to, std::size_t count, double power, double origin) {
   std::vector<double> nodes(count, from);
+  const double u0 = std::pow(from - origin, 1 / power), u1 = std::pow(to - origin, 1 / power);
   for (std::size_t i = 1; i < count; ++i)
-    nodes[i] = from + (to - from) * std::pow(static_cast<double>(i) / static_cast<double>(count - 1), power);
+    nodes[i] =
+        origin + std::pow(std::lerp(u0, u1, static_cast<double>(i) / static_cast<double>(count - 1)), power);
   if (count > 1) nodes.back() = to;
   return nodes;
 }

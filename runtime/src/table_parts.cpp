@@ -121,6 +121,7 @@ Attributes describe_axes(const std::vector<Axis>& axes) {
     result[prefix + "unit"] = axes[k].unit;
     result[prefix + "power"] = to_text(axes[k].power);
     result[prefix + "period"] = to_text(axes[k].period);
+    result[prefix + "origin"] = to_text(axes[k].origin);
     result[prefix + "nodes"] = to_text(axes[k].nodes);
   }
   return result;
@@ -143,6 +144,7 @@ std::vector<Axis> parse_axes(const Attributes& attributes, const std::string& ar
     };
     axis.power = number(require(attributes, prefix + "power"));
     axis.period = number(require(attributes, prefix + "period"));
+    axis.origin = number(require(attributes, prefix + "origin"));
     for (const auto& node : split(require(attributes, prefix + "nodes"), ' '))
       axis.nodes.push_back(number(node));
     axes.push_back(std::move(axis));

@@ -13,15 +13,16 @@ struct Bracket {
   double upper_weight = 0;
 };
 
-// Interpolation is linear in the coordinate u(x) = (x - nodes.front())^(1 / power); power 1 is plain linear,
-// 2 and 3 suit quantities that behave like a square or cube root at the first node.
-// A periodic axis (period > 0) has its nodes in [first, first + period) and wraps round.
+// Interpolation is linear in the coordinate u(x) = (x - origin)^(1 / power); power 1 is plain linear, 2 and 3
+// suit quantities that behave like a square or cube root at the origin, which no node may lie below. A
+// periodic axis (period > 0) has its nodes in [first, first + period) and wraps round.
 struct Axis {
   std::string name;
   std::string unit;
   std::vector<double> nodes;  // strictly increasing, at least one
   double power = 1;
   double period = 0;
+  double origin = 0;
 
   std::size_t size() const { return nodes.size(); }
   double low() const { return nodes.front(); }
@@ -37,7 +38,8 @@ struct Axis {
   bool operator==(const Axis&) const = default;
 };
 
-// `count` nodes from `from` to `to`, uniform in the axis coordinate of the given power.
-std::vector<double> spaced_nodes(double from, double to, std::size_t count, double power);
+// `count` nodes from `from` to `to`, uniform in the axis coordinate of the given power and origin.
+std::vector<double> spaced_nodes(double from, double to, std::size_t count, double power = 1,
+                                 double origin = 0);
 
 }  // namespace sunbeam

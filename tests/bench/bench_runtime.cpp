@@ -1,0 +1,88 @@
+// Nanoseconds per call of a table bound to one parameter point, of the live model at the same point, and of
+// Lambert as the yardstick, over the same random directions. Run: build/release/bin/bench_runtime
+#include <benchmark/benchmark.h>
+
+#include <vector>
+
+#include "bake/live/live_bsdf.h"
+#include "sunbeam/lambert.h"
+#include "sunbeam/table_bsdf.h"
+#include "sunbeam/table_io.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr std::size_t kPairs = 4096;
+
+struct Pair {
+  Vec3 wo, wi;
+};
+
+std::vector<Pair> random_pairs() {
+  Rng rng(1, 0);
+  std::vector<Pair> pairs(kPairs);
+  for (Pair& pair : pairs)
+    pair = {sample_cosine({rng.uniform(), rng.uniform()}), sample_cosine({rng.uniform(), rng.uniform()})};
+  return pairs;
+}
+
+const Table& table() {
+  static const Table loaded = load_table_exr(SUNBEAM_SOURCE_DIR "/tables/golden/preview.exr");
+  return loaded;
+}
+
+const Bsdf& table_bsdf() {
+  static const TableBsdf bsdf(table(), Parameters::of(table().material), OutsideGrid::refuse);
+  return bsdf;
+}
+
+const Bsdf& live_bsdf() {
+  static const LiveBsdf bsdf(table().material);
+  return bsdf;
+}
+
+const Bsdf& lambert_bsdf() {
+  static const Lambert bsdf(Rgb(0.5));
+  return bsdf;
+}
+
+void eval(benchmark::State& state, const Bsdf& bsdf) {
+  const auto pairs = random_pairs();
+  Rng rng(2, 0);
+  std::size_t k = 0;
+  for (auto _ : state) {
+    const Pair& pair = pairs[k++ % kPairs];
+    benchmark::DoNotOptimize(bsdf.eval(pair.wo, pair.wi, rng));
+  }
+}
+
+void mis_pdf(benchmark::State& state, const Bsdf& bsdf) {
+  const auto pairs = random_pairs();
+  std::size_t k = 0;
+  for (auto _ : state) {
+    const Pair& pair = pairs[k++ % kPairs];
+    benchmark::DoNotOptimize(bsdf.mis_pdf(pair.wo, pair.wi));
+  }
+}
+
+void sample(benchmark::State& state, const Bsdf& bsdf) {
+  const auto pairs = random_pairs();
+  Rng rng(3, 0);
+  std::size_t k = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(bsdf.sample(pairs[k++ % kPairs].wo, rng));
+}
+
+BENCHMARK_CAPTURE(eval, lambert, lambert_bsdf());
+BENCHMARK_CAPTURE(eval, table, table_bsdf());
+BENCHMARK_CAPTURE(eval, live, live_bsdf());
+BENCHMARK_CAPTURE(mis_pdf, lambert, lambert_bsdf());
+BENCHMARK_CAPTURE(mis_pdf, table, table_bsdf());
+BENCHMARK_CAPTURE(mis_pdf, live, live_bsdf());
+BENCHMARK_CAPTURE(sample, lambert, lambert_bsdf());
+BENCHMARK_CAPTURE(sample, table, table_bsdf());
+BENCHMARK_CAPTURE(sample, live, live_bsdf());
+
+}  // namespace
+}  // namespace sunbeam
+
+BENCHMARK_MAIN();

@@ -1,0 +1,39 @@
+// Materials the random tests share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sunbeam/material.h"
+
+namespace sunbeam::test {
+
+struct NamedMaterial {
+  std::string name;
+  Material material;
+};
+
+// Every combination of film surface, transmission and absorption path, of bright skin: little is absorbed, so
+// that several visits of the base count.
+inline std::vector<NamedMaterial> all_modes(double roughness = 0.3, double optical_depth = 0.1,
+                                            const Rgb& albedo = {0.9, 0.8, 0.6}) {
+  std::vector<NamedMaterial> result;
+  for (const double alpha : {0.0, roughness})
+    for (const auto transmission : {Transmission::straight, Transmission::refract})
+      for (const auto path : {AbsorptionPath::product, AbsorptionPath::sum}) {
+        Material m;
+        m.transmission = transmission;
+        m.absorption_path = path;
+        m.film_thickness_nm = 350;
+        m.base_ior = 1.4;
+        m.absorption_per_nm = optical_depth / m.pigment_thickness_nm;
+        m.albedo = albedo;
+        m.roughness = alpha;
+        result.push_back({std::string(alpha > 0 ? "rough " : "smooth ") +
+                              std::string(to_string(transmission)) + " " + std::string(to_string(path)),
+                          m});
+      }
+  return result;
+}
+
+}  // namespace sunbeam::test

@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <memory>
 #include <ostream>
 
 #include "bake/cell.h"
@@ -139,9 +140,7 @@ Results live_results(const Material& material, const Point& point, const PointsS
   return {{"reflectance", model.film().power(point.wi.z).reflectance}};
 }
 
-Results table_results(const Table& table, const Parameters& parameters, const Point& point,
-                      Quantity quantity) {
-  const TableBsdf bsdf(table, parameters, OutsideGrid::refuse);
+Results table_results(const TableBsdf& bsdf, const Point& point, Quantity quantity) {
   if (quantity == Quantity::film) return {{"reflectance", bsdf.film_reflectance(point.wi.z)}};
   if (quantity == Quantity::albedo) return {{"total", bsdf.albedo(point.wi)}, {"stderr", Rgb()}};
   return {{"first", bsdf.first(point.wo, point.wi)},
@@ -169,15 +168,19 @@ void append(std::string& line, const Results& results, std::optional<int> channe
   }
 }
 
-// Evaluates every row in parallel and prints them in order; nothing is printed if any row is bad.
+// Evaluates every row in parallel and prints them in order; nothing is printed if any row is bad. Every block
+// of rows has its own copy of `results`, which may remember what the rows share.
 template <class RowResults>
 void print_rows(const Csv& csv, const PointReader& reader, Quantity quantity, std::ostream& out,
-                RowResults results) {
+                const RowResults& results) {
   std::vector<std::string> lines(csv.rows.size());
-  tbb::parallel_for(std::size_t{0}, csv.rows.size(), [&](std::size_t k) {
-    const auto [values, channel] = results(k);
-    lines[k] = fmt::format("{}", fmt::join(csv.rows[k].cells, ","));
-    append(lines[k], values, channel);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, csv.rows.size()), [&](const auto& block) {
+    RowResults block_results = results;
+    for (std::size_t k = block.begin(); k < block.end(); ++k) {
+      const auto [values, channel] = block_results(k);
+      lines[k] = fmt::format("{}", fmt::join(csv.rows[k].cells, ","));
+      append(lines[k], values, channel);
+    }
   });
   out << fmt::format("{},{}\n", fmt::join(csv.header, ","),
                      fmt::join(result_names(quantity, reader.is_monochromatic()), ","));
@@ -185,6 +188,37 @@ void print_rows(const Csv& csv, const PointReader& reader, Quantity quantity, st
 }
 
 using RowAndChannel = std::pair<Results, std::optional<int>>;
+
+// Rows of a table. Binding it to parameters costs far more than a look-up, and rows mostly share theirs.
+class TableRows {
+ public:
+  TableRows(const Table& table, const Csv& csv, const PointReader& reader, Quantity quantity)
+      : table_(table), csv_(csv), reader_(reader), quantity_(quantity) {}
+
+  RowAndChannel operator()(std::size_t k) {
+    const Point point = reader_.point(k);
+    std::optional<int> channel;
+    if (point.wavelength_nm) channel = table_channel(csv_, csv_.rows[k], *point.wavelength_nm);
+    bind(k, Parameters::of(reader_.material(k, table_.material)));
+    return {table_results(*bsdf_, point, quantity_), channel};
+  }
+
+ private:
+  void bind(std::size_t k, const Parameters& parameters) {
+    if (bsdf_ && Parameters::of(bsdf_->material()).values() == parameters.values()) return;
+    try {
+      bsdf_ = std::make_shared<TableBsdf>(table_, parameters, OutsideGrid::refuse);
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}:{}: {}", csv_.name, csv_.rows[k].line, error.what()));
+    }
+  }
+
+  const Table& table_;
+  const Csv& csv_;
+  const PointReader& reader_;
+  Quantity quantity_;
+  std::shared_ptr<const TableBsdf> bsdf_;
+};
 
 }  // namespace
 
@@ -208,17 +242,7 @@ void evaluate_points_table(const Table& table, std::istream& in, const std::stri
     if (std::find(kParameterNames.begin(), kParameterNames.end(), csv.header[k]) == kParameterNames.end())
       throw Error(fmt::format("{}: column '{}' is fixed in a table; a table's row may set {}", name,
                               csv.header[k], fmt::join(kParameterNames, ", ")));
-  print_rows(csv, reader, settings.quantity, out, [&](std::size_t k) -> RowAndChannel {
-    const Point point = reader.point(k);
-    std::optional<int> channel;
-    if (point.wavelength_nm) channel = table_channel(csv, csv.rows[k], *point.wavelength_nm);
-    const Parameters parameters = Parameters::of(reader.material(k, table.material));
-    try {
-      return {table_results(table, parameters, point, settings.quantity), channel};
-    } catch (const Error& error) {
-      throw Error(fmt::format("{}:{}: {}", name, csv.rows[k].line, error.what()));
-    }
-  });
+  print_rows(csv, reader, settings.quantity, out, TableRows(table, csv, reader, settings.quantity));
 }
 
 }  // namespace sunbeam

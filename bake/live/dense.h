@@ -1,0 +1,85 @@
+// Small dense matrices, row by row, as the exact evaluator needs them (about 100 x 100).
+//
+// Products run along rows, so that compilers vectorise them without reordering a sum.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace sunbeam {
+
+using Vector = std::vector<double>;
+
+class Matrix {
+ public:
+  Matrix() = default;
+  explicit Matrix(int size) : size_(size), values_(static_cast<std::size_t>(size) * size) {}
+
+  int size() const { return size_; }
+  double* row(int i) { return values_.data() + static_cast<std::size_t>(i) * size_; }
+  const double* row(int i) const { return values_.data() + static_cast<std::size_t>(i) * size_; }
+
+ private:
+  int size_ = 0;
+  Vector values_;
+};
+
+// y += factor * x over `count` numbers.
+inline void add_scaled(double factor, const double* x, int count, double* y) {
+  for (int k = 0; k < count; ++k) y[k] += factor * x[k];
+}
+
+inline double dot(const Vector& a, const Vector& b) {
+  double sum = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+// x^T a; for a symmetric matrix also a x.
+inline Vector multiply(const Vector& x, const Matrix& a) {
+  Vector y(x.size());
+  for (int i = 0; i < a.size(); ++i)
+    if (x[i] != 0) add_scaled(x[i], a.row(i), a.size(), y.data());
+  return y;
+}
+
+inline Matrix multiply(const Matrix& a, const Matrix& b) {
+  Matrix c(a.size());
+  for (int i = 0; i < a.size(); ++i)
+    for (int k = 0; k < a.size(); ++k)
+      if (a.row(i)[k] != 0) add_scaled(a.row(i)[k], b.row(k), a.size(), c.row(i));
+  return c;
+}
+
+// (a + a^T) / 2.
+inline void symmetrise(Matrix& a) {
+  for (int i = 0; i < a.size(); ++i)
+    for (int k = 0; k < i; ++k) a.row(i)[k] = a.row(k)[i] = (a.row(i)[k] + a.row(k)[i]) / 2;
+}
+
+// x with a x = b: Gauss elimination with row pivoting.
+inline Matrix solve(Matrix a, Matrix b) {
+  const int n = a.size();
+  for (int k = 0; k < n; ++k) {
+    int pivot = k;
+    for (int i = k + 1; i < n; ++i)
+      if (std::abs(a.row(i)[k]) > std::abs(a.row(pivot)[k])) pivot = i;
+    std::swap_ranges(a.row(k), a.row(k) + (pivot == k ? 0 : n), a.row(pivot));
+    std::swap_ranges(b.row(k), b.row(k) + (pivot == k ? 0 : n), b.row(pivot));
+    for (int i = k + 1; i < n; ++i) {
+      const double factor = -a.row(i)[k] / a.row(k)[k];
+      if (factor == 0) continue;
+      add_scaled(factor, a.row(k) + k, n - k, a.row(i) + k);
+      add_scaled(factor, b.row(k), n, b.row(i));
+    }
+  }
+  for (int k = n - 1; k >= 0; --k) {
+    for (int i = k + 1; i < n; ++i) add_scaled(-a.row(k)[i], b.row(i), n, b.row(k));
+    for (int j = 0; j < n; ++j) b.row(k)[j] /= a.row(k)[k];
+  }
+  return b;
+}
+
+}  // namespace sunbeam

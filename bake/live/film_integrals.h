@@ -1,0 +1,86 @@
+// The film as integrals over its facets, by quadrature: what FilmInterface draws at random, summed up.
+//
+// An isotropic film under a base without azimuth acts on polar cosines alone. Below it a function of the
+// cosine is known by its values at the nodes of a CosineBasis, so the film is a matrix (reflection from
+// below) and vectors (passages). Powers are per wavelength, three at once.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "bake/live/cosine_basis.h"
+#include "bake/live/dense.h"
+#include "bake/live/film_interface.h"
+
+namespace sunbeam {
+
+// Numbers of nodes. The defaults give the errors that exact.h states; tests double them.
+struct ExactResolution {
+  int per_panel = 10;  // of a panel of the cosine basis, at most 24
+  int normals = 24;    // facets: polar angle of the normal,
+  int cosines = 12;    //         a panel of the direction's cosine with it, at most 24,
+  int azimuths = 16;   //         the direction's azimuth about it
+  int visible = 32;    // normals visible from one direction: polar, and as many azimuths
+};
+
+// Power arriving along w that reaches the base at `cosine`.
+struct PassagePoint {
+  double cosine;
+  Rgb power;
+};
+
+class FilmIntegrals {
+ public:
+  FilmIntegrals(const Material& material, const Rgb& wavelengths_nm, const ExactResolution& resolution);
+
+  const CosineBasis& basis() const { return basis_; }
+  // False if facets bend light, so that passages() is a quadrature over many cosines.
+  bool has_single_crossing() const { return !interface_.has_glossy_crossing(); }
+
+  // p_t(w -> m) dm as points of m.z; their powers sum to the share of w's power that reaches the base.
+  std::vector<PassagePoint> passages(const Vec3& w) const;
+
+  // Directional albedo of the first surface, a smooth film's Dirac included.
+  Rgb first_albedo(const Vec3& w) const;
+
+  // B, symmetric: f^T B g = Int Int f(m.z) m.z f_below(m, m') m'.z g(m'.z) dm dm', one matrix a wavelength.
+  std::array<Matrix, 3> reflection() const;
+
+  // t^T f = Int (n0/n2)^2 w.z p_t(w -> m) f(m.z) dm dw: power that leaves the film altogether when the base
+  // sends the radiance f up.
+  std::array<Vector, 3> exit(const std::array<Matrix, 3>& reflection) const;
+
+ private:
+  // One direction a side of a facet: both cosines with the macro normal.
+  struct Meeting {
+    double cosine, partner;
+    Rgb weight;
+  };
+  enum class Event { reflection_below, passage };
+
+  const ThinFilm& film_of(Event event) const { return event == Event::passage ? film_ : film_below_; }
+  double phase(const ThinFilm& film, double cosine) const;
+  int oscillation_panels(const ThinFilm& film, double low, double high) const;
+  std::vector<Rgb> moments(Event event, double low, double high) const;
+  void add_smooth_reflection(double low, double high, std::array<Matrix, 3>& sum) const;
+  template <class F>
+  void visit_visible(const Vec3& w, F visit) const;
+  template <class F>
+  void visit_facets(Event event, F visit) const;
+  template <class F>
+  void visit_azimuths(Event event, double cos_h, double cosine, const Rgb& weight, F visit) const;
+  double shadowing(Event event, double cosine, double partner) const;
+
+  Material material_;
+  ExactResolution resolution_;
+  FilmInterface interface_;
+  ThinFilm film_, film_below_;
+  Rgb wavelengths_nm_;
+  double index_ratio_;  // n0 / n2 if facets bend light, else 1
+  Ggx ggx_;
+  CosineBasis basis_;
+  GaussInterpolation cosine_panel_;
+  GaussRule fine_, normals_, azimuths_;
+};
+
+}  // namespace sunbeam

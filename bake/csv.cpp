@@ -13,7 +13,7 @@
 namespace sunbeam {
 namespace {
 
-// Commas inside double quotes do not separate.
+// Commas inside double quotes do not separate. Empty if a quote is not closed.
 std::vector<std::string> split_cells(const std::string& line) {
   std::vector<std::string> cells(1);
   bool quoted = false;
@@ -24,7 +24,14 @@ std::vector<std::string> split_cells(const std::string& line) {
     else
       cells.back() += c;
   }
-  return cells;
+  return quoted ? std::vector<std::string>() : cells;
+}
+
+void refuse_repeated(const Csv& csv, std::size_t line) {
+  std::set<std::string> seen;
+  for (const auto& column : csv.header)
+    if (!seen.insert(column).second)
+      throw Error(fmt::format("{}:{}: column '{}' comes twice in the header", csv.name, line, column));
 }
 
 }  // namespace
@@ -39,8 +46,8 @@ double Csv::number(const CsvRow& row, std::size_t column, double low, double hig
   double value = 0;
   const bool parsed = parse_number(row.cells[column], value);
   if (!parsed || !(value >= low) || !(closed ? value <= high : value < high))
-    throw Error(fmt::format("{}:{}: column '{}': found '{}'; allowed: a number, {:g} to {}{:g}", name,
-                            row.line, header[column], row.cells[column], low, closed ? "" : "below ", high));
+    throw Error(fmt::format("{}:{}: column '{}': found '{}'; allowed: a number, {} to {}{}", name, row.line,
+                            header[column], row.cells[column], low, closed ? "" : "below ", high));
   return value;
 }
 
@@ -50,12 +57,13 @@ Csv read_csv(std::istream& in, const std::string& name) {
   std::string line;
   for (std::size_t number = 1; std::getline(in, line); ++number) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // a spreadsheet's byte order mark
     if (line.empty() || line.front() == '#') continue;
     auto cells = split_cells(line);
+    if (cells.empty()) throw Error(fmt::format("{}:{}: a quote is opened and not closed", name, number));
     if (csv.header.empty()) {
       csv.header = std::move(cells);
-      if (std::set(csv.header.begin(), csv.header.end()).size() != csv.header.size())
-        throw Error(fmt::format("{}:{}: a column name comes twice in the header", name, number));
+      refuse_repeated(csv, number);
     } else if (cells.size() != csv.header.size()) {
       throw Error(fmt::format("{}:{}: found {} cells; the header has {}", name, number, cells.size(),
                               csv.header.size()));

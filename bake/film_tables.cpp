@@ -9,6 +9,7 @@ namespace {
 constexpr double kPhaseStep = 0.15;  // rad of film phase between thickness nodes: linear to 0.3 % of a fringe
 constexpr std::size_t kIorRefinement = 3;  // nodes per interval of the recipe's grid
 constexpr std::size_t kCosines = 65;
+constexpr double kSmallestCosine = 1e-8;  // the node at 0 holds the limit from above: 0 without interfaces
 constexpr std::size_t kNormalNodes = 48;  // quadrature over visible normals, each way
 
 Axis film_thickness_axis(const Recipe& recipe) {
@@ -43,7 +44,7 @@ std::vector<double> crossing_weights(const Material& material, const Axis& cosin
   const std::size_t n = cosines.size();
   std::vector<double> weights(n * n);
   for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 w = direction_from_cosine(std::max(cosines.nodes[i], 1e-6), 0);
+    const Vec3 w = direction_from_cosine(std::max(cosines.nodes[i], kSmallestCosine), 0);
     for (std::size_t k = 0; k < kNormalNodes * kNormalNodes; ++k) {
       const double u = (static_cast<double>(k % kNormalNodes) + 0.5) / kNormalNodes;
       const double v = (static_cast<double>(k / kNormalNodes) + 0.5) / kNormalNodes;
@@ -69,10 +70,14 @@ Rgb weighted_transmittance(const NdArray& reflectance, std::size_t first_cell,
 
 }  // namespace
 
+std::vector<Axis> film_axes(const Recipe& recipe) {
+  return {
+      film_thickness_axis(recipe), film_ior_axis(recipe), {"cos_theta", "1", spaced_nodes(0, 1, kCosines)}};
+}
+
 void bake_film(const Recipe& recipe, Table& table) {
-  const Axis thickness = film_thickness_axis(recipe), ior = film_ior_axis(recipe);
-  const Axis cosine{"cos_theta", "1", spaced_nodes(0, 1, kCosines)};
-  const std::vector<Axis> axes = {thickness, ior, cosine};
+  const auto axes = film_axes(recipe);
+  const Axis &thickness = axes[0], &ior = axes[1], &cosine = axes[2];
   table.film_reflectance = NdArray("film_reflectance", axes, Precision::single_float);
   if (!recipe.material.is_smooth())
     table.film_transmittance = NdArray("film_transmittance", axes, Precision::single_float);
@@ -86,7 +91,8 @@ void bake_film(const Recipe& recipe, Table& table) {
       const FilmInterface film(material, kRgb3WavelengthsNm);
       const std::size_t row = a * table.film_reflectance.stride(0) + b * table.film_reflectance.stride(1);
       for (std::size_t c = 0; c < kCosines; ++c)
-        table.film_reflectance.set(row + c, film.power(cosine.nodes[c]).reflectance);
+        table.film_reflectance.set(row + c,
+                                   film.power(std::max(cosine.nodes[c], kSmallestCosine)).reflectance);
       if (material.is_smooth()) continue;
       for (std::size_t c = 0; c < kCosines; ++c)
         table.film_transmittance.set(

@@ -6,6 +6,9 @@
 
 namespace sunbeam {
 
+// Axes (film_thickness_nm, base_ior, cos_theta) of the film arrays: finer than the grid, as fringes need.
+std::vector<Axis> film_axes(const Recipe& recipe);
+
 // Fills table.film_reflectance and table.film_transmittance for the recipe's grid.
 void bake_film(const Recipe& recipe, Table& table);
 

@@ -71,7 +71,9 @@ std::vector<double> read_nodes(const ConfigTable& grid, const Axis& axis) {
   if (!grid.is_table(key)) {
     const auto nodes = grid.numbers(key, allowed);
     for (std::size_t i = 1; i < nodes.size(); ++i)
-      if (nodes[i] <= nodes[i - 1]) grid.fail(key, "the list must increase");
+      if (nodes[i] <= nodes[i - 1])
+        grid.fail(key,
+                  fmt::format("found {} after {}; allowed: a list that increases", nodes[i], nodes[i - 1]));
     if (nodes.empty()) grid.fail(key, "the list is empty; allowed: at least one number");
     return nodes;
   }
@@ -79,7 +81,11 @@ std::vector<double> read_nodes(const ConfigTable& grid, const Axis& axis) {
   const double from = range.number("from", allowed);
   const double to = range.number("to", {from, allowed.high});
   const int count = range.integer("count", 1, 4096);
-  if ((count == 1) != (from == to)) range.fail("count", "one node needs from = to, several need from < to");
+  if ((count == 1) != (from == to))
+    range.fail(
+        "count",
+        fmt::format("found {} nodes from {} to {}; allowed: one node with from = to, several with from < to",
+                    count, from, to));
   return spaced_nodes(from, to, static_cast<std::size_t>(count), power_above(axis, from), axis.origin);
 }
 
@@ -105,7 +111,7 @@ Recipe parse_recipe(const std::string& text, const std::string& name,
   recipe.grid = read_grid(config.table("grid"), recipe.material);
 
   const ConfigTable table = config.table("table");
-  recipe.table.cosines = table.integer("cosines", 2, 512, recipe.table.cosines);
+  recipe.table.angles = table.integer("angles", 2, 512, recipe.table.angles);
   recipe.table.azimuths = table.integer("azimuths", 1, 512, recipe.table.azimuths);
   recipe.table.precision = static_cast<Precision>(table.choice("precision", {"half", "float"}, 0));
   table.choice("encoding", {"dense"}, 0);

@@ -16,7 +16,7 @@ struct Recipe {
   std::vector<Axis> grid;  // [grid]: the three parameter axes in table order; one node if not swept
 
   struct {
-    int cosines = 12;  // nodes over cos(theta), for wi and wo alike
+    int angles = 12;   // nodes over cos(theta), for wi and wo alike
     int azimuths = 1;  // nodes over |dphi| in [0, pi]; the rest of an isotropic film has no azimuth
     Precision precision = Precision::half_float;
     std::string encoding = "dense";

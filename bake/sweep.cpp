@@ -1,5 +1,6 @@
 #include "bake/sweep.h"
 
+#include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
@@ -11,6 +12,7 @@
 #include "bake/film_tables.h"
 #include "bake/live/pfmc.h"
 #include "bake/version.h"
+#include "sunbeam/core/error.h"
 #include "sunbeam/core/text.h"
 
 namespace sunbeam {
@@ -22,7 +24,7 @@ constexpr double kLowestCosine = 0.01;
 
 std::vector<Axis> rest_axes(const Recipe& recipe) {
   std::vector<Axis> axes = recipe.grid;
-  const auto cosines = spaced_nodes(kLowestCosine, 1, static_cast<std::size_t>(recipe.table.cosines));
+  const auto cosines = spaced_nodes(kLowestCosine, 1, static_cast<std::size_t>(recipe.table.angles));
   const auto azimuths = spaced_nodes(0, kPi, static_cast<std::size_t>(recipe.table.azimuths));
   axes.push_back({"cos_theta_i", "1", cosines});
   axes.push_back({"phi_i", "rad", {0}});
@@ -162,7 +164,26 @@ class Sweep {
   std::mutex progress_mutex_;
 };
 
+double cells_of(const std::vector<Axis>& axes) {
+  double cells = 1;
+  for (const Axis& axis : axes) cells *= static_cast<double>(axis.size());
+  return cells;
+}
+
 }  // namespace
+
+void require_reasonable_size(const Recipe& recipe) {
+  constexpr double kMostCells = 1 << 28;  // two arrays of three floats: 6.4 GB
+  const double rest = cells_of(rest_axes(recipe)), film = cells_of(film_axes(recipe));
+  if (rest > kMostCells)
+    throw Error(
+        fmt::format("{}: [grid] and table.angles, table.azimuths ask for {:.3g} cells; allowed: up to {:.3g}",
+                    recipe.name, rest, kMostCells));
+  if (film > kMostCells)
+    throw Error(fmt::format(
+        "{}: grid.film_thickness_nm and grid.base_ior ask for {:.3g} film cells; allowed: up to {:.3g}",
+        recipe.name, film, kMostCells));
+}
 
 Table bake_table(const Recipe& recipe, const SweepSettings& settings) {
   return Sweep(recipe, settings).run();

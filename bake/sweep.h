@@ -17,6 +17,9 @@ struct SweepSettings {
   std::function<void(double fraction)> on_progress;  // called now and then, one thread at a time
 };
 
+// Throws Error if the table would be larger than a machine can be expected to hold.
+void require_reasonable_size(const Recipe& recipe);
+
 // The same recipe and seed give the same bits for every thread count: each (parameter node, theta_i) has its
 // own random stream and its own stop rule. info holds everything but the measured error.
 Table bake_table(const Recipe& recipe, const SweepSettings& settings);

@@ -34,12 +34,13 @@ void measure_error(const Recipe& recipe, int threads, Table& table) {
 int run_bake(const BakeOptions& options) {
   require_table_extension(options.output);
   const Recipe recipe = load_recipe(options.recipe, options.overrides);
+  require_reasonable_size(recipe);
   require_writable(options.output);
 
   std::size_t nodes = 1;
   for (const Axis& axis : recipe.grid) nodes *= axis.size();
   fmt::print(stderr, "{}: {} parameter nodes, {} x {} x {} angles, values by {}\n", options.recipe, nodes,
-             recipe.table.cosines, recipe.table.cosines, recipe.table.azimuths, kEstimatorName);
+             recipe.table.angles, recipe.table.angles, recipe.table.azimuths, kEstimatorName);
   SweepSettings settings;
   settings.seed = options.seed;
   settings.threads = options.threads;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,8 +44,8 @@ struct RenderOptions {
   std::string scene, output, stats;
   std::string table;  // in place of the scene's own
   std::string material = "table";
-  std::string size;
-  int samples_per_pixel = 0;  // 0: as the scene says
+  std::optional<std::string> size;  // WIDTHxHEIGHT; as the scene says if not given
+  int samples_per_pixel = 0;        // 0: as the scene says
   int threads = 0;
   std::uint64_t seed = 1;
 };

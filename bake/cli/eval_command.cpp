@@ -1,5 +1,5 @@
-#include <fstream>
 #include <iostream>
+#include <sstream>
 
 #include "bake/cli/commands.h"
 #include "bake/points.h"
@@ -35,8 +35,7 @@ int run_eval(const EvalOptions& options) {
   if (options.points == "-") {
     evaluate(options, std::cin, "standard input");
   } else {
-    std::ifstream file(options.points);
-    if (!file) throw Error(options.points + ": cannot read");
+    std::istringstream file(read_file(options.points));
     evaluate(options, file, options.points);
   }
   if (!std::cout.flush()) throw Error("standard output: cannot write");

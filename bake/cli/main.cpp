@@ -3,17 +3,37 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <csignal>
+#include <limits>
 #include <new>
 
 #include "bake/cli/commands.h"
 #include "bake/version.h"
+#include "runtime/config/config.h"
 #include "sunbeam/core/error.h"
 
 namespace {
 
 using namespace sunbeam;
 
-constexpr int kThreadLimit = 1024;
+// CLI11 alone would let "-1" wrap round to a large unsigned number.
+CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
+  return CLI::Validator(
+      [low, high](std::string& text) {
+        std::uint64_t value = 0;
+        const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool parsed = result.ec == std::errc() && result.ptr == text.data() + text.size();
+        if (parsed && value >= low && value <= high) return std::string();
+        return fmt::format("found '{}'; allowed: a whole number, {} to {}", text, low, high);
+      },
+      "");
+}
+
+constexpr std::uint64_t kMostThreads = 1024;
+constexpr std::uint64_t kMostSamples = 1000000000000000;
+constexpr std::uint64_t kAnySeed = std::numeric_limits<std::uint64_t>::max();
 
 CLI::App* add_command(CLI::App& app, const char* name, const char* what, const char* example) {
   CLI::App* command = app.add_subcommand(name, what);
@@ -22,7 +42,7 @@ CLI::App* add_command(CLI::App& app, const char* name, const char* what, const c
 }
 
 void add_threads(CLI::App* command, int& threads) {
-  command->add_option("--threads", threads, "Threads; 0 uses all")->check(CLI::Range(0, kThreadLimit));
+  command->add_option("--threads", threads, "Threads; 0 uses all")->check(whole_number(0, kMostThreads));
 }
 
 void add_overrides(CLI::App* command, std::vector<std::string>& overrides) {
@@ -39,7 +59,7 @@ void add_bake(CLI::App& app, BakeOptions& o, int& exit_code) {
   command->add_option("-o,--output", o.output, "Table to write; the extension chooses the form")->required();
   add_overrides(command, o.overrides);
   add_threads(command, o.threads);
-  command->add_option("--seed", o.seed, "Random seed");
+  command->add_option("--seed", o.seed, "Random seed")->check(whole_number(0, kAnySeed));
   command->callback([&] { exit_code = run_bake(o); });
 }
 
@@ -60,8 +80,8 @@ void add_eval(CLI::App& app, EvalOptions& o, int& exit_code) {
   command->add_option("--quantity", o.quantity, "What to evaluate")
       ->check(CLI::IsMember({"brdf", "albedo", "film"}));
   add_overrides(command, o.overrides);
-  command->add_option("--samples", o.samples, "Walks a row, live only")->check(CLI::Range(2.0, 1e15));
-  command->add_option("--seed", o.seed, "Random seed; row k uses stream k");
+  command->add_option("--samples", o.samples, "Walks a row, live only")->check(whole_number(2, kMostSamples));
+  command->add_option("--seed", o.seed, "Random seed; row k uses stream k")->check(whole_number(0, kAnySeed));
   command->callback([&] { exit_code = run_eval(o); });
 }
 
@@ -70,10 +90,11 @@ void add_verify(CLI::App& app, VerifyOptions& o, int& exit_code) {
       add_command(app, "verify", "Hold a table against live evaluation at random held-out points",
                   "sunbeam verify skin.exr --json report.json");
   command->add_option("table", o.table, "Table (.exr or .vdb)")->required();
-  command->add_option("--points", o.points, "Random points")->check(CLI::Range(1, 100000000));
+  command->add_option("--points", o.points, "Random points")->check(whole_number(1, 100000000));
   command->add_option("--json", o.json, "Write the figures to this file");
   add_threads(command, o.threads);
-  command->add_option("--seed", o.seed, "Random seed; point k uses stream k");
+  command->add_option("--seed", o.seed, "Random seed; point k uses stream k")
+      ->check(whole_number(0, kAnySeed));
   command->callback([&] { exit_code = run_verify(o); });
 }
 
@@ -87,11 +108,38 @@ void add_render(CLI::App& app, RenderOptions& o, int& exit_code) {
       ->check(CLI::IsMember({"table", "live", "diffuse"}));
   command->add_option("--table", o.table, "Table to use in place of the scene's own");
   command->add_option("--size", o.size, "WIDTHxHEIGHT in pixels");
-  command->add_option("--spp", o.samples_per_pixel, "Samples per pixel")->check(CLI::Range(1, 1 << 24));
+  command->add_option("--spp", o.samples_per_pixel, "Samples per pixel")->check(whole_number(1, 1 << 24));
   add_threads(command, o.threads);
-  command->add_option("--seed", o.seed, "Random seed");
+  command->add_option("--seed", o.seed, "Random seed")->check(whole_number(0, kAnySeed));
   command->add_option("--stats", o.stats, "Write timing and counts to this JSON file");
   command->callback([&] { exit_code = run_render(o); });
+}
+
+void refuse_unknown_option(const CLI::App& command, const std::string& argument) {
+  const std::string option = argument.substr(0, argument.find('='));
+  if (!option.starts_with("--") || command.get_option_no_throw(option)) return;
+  std::vector<std::string> names;
+  for (const CLI::Option* known : command.get_options())
+    for (const auto& name : known->get_lnames()) names.push_back("--" + name);
+  throw Error(fmt::format("'{}' is not an option; the nearest is '{}'", option, nearest(option, names)));
+}
+
+// CLI11 reports a missing argument before the typo that caused it; this names the typo.
+void refuse_unknown(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2) return;
+  const std::string first = argv[1];
+  refuse_unknown_option(app, first);
+  if (first.starts_with('-')) return;
+  const auto commands = app.get_subcommands([](const CLI::App*) { return true; });
+  const auto command =
+      std::find_if(commands.begin(), commands.end(), [&](auto* c) { return c->get_name() == first; });
+  if (command != commands.end()) {
+    for (int k = 2; k < argc; ++k) refuse_unknown_option(**command, argv[k]);
+    return;
+  }
+  std::vector<std::string> names;
+  for (const CLI::App* known : commands) names.push_back(known->get_name());
+  throw Error(fmt::format("'{}' is not a command; the nearest is '{}'", first, nearest(first, names)));
 }
 
 int run(int argc, char** argv) {
@@ -112,10 +160,14 @@ int run(int argc, char** argv) {
   add_eval(app, eval, exit_code);
   add_verify(app, verify, exit_code);
   add_render(app, render, exit_code);
+  refuse_unknown(app, argc, argv);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::Success& help_or_version) {
+    return app.exit(help_or_version);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    throw Error(
+        fmt::format("{}; see sunbeam {}--help", error.what(), argc > 1 ? std::string(argv[1]) + " " : ""));
   }
   return exit_code;
 }
@@ -123,6 +175,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a full quota is an error to report, like a full disk
   try {
     return run(argc, argv);
   } catch (const Error& error) {

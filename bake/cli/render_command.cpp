@@ -125,8 +125,8 @@ int run_render(const RenderOptions& options) {
     throw Error(options.output + ": extension is '" + extension(options.output) +
                 "'; allowed for an image: .exr");
   RenderSettings settings;
-  if (!options.size.empty()) {
-    const ImageSize size = parse_size(options.size);
+  if (options.size) {
+    const ImageSize size = parse_size(*options.size);
     settings.width = size.width;
     settings.height = size.height;
   }

@@ -15,10 +15,97 @@ constexpr int kMaxVisibleNodes = 400;
 double smooth_step(double t) { return t * t * (3 - 2 * t); }
 double smooth_step_slope(double t) { return 6 * t * (1 - t); }
 
+// Calls visit(x, dx) for the nodes of every panel between neighbouring edges.
+template <std::size_t kCount, class F>
+void for_each_node(const std::array<double, kCount>& edges, const GaussRule& rule, F visit) {
+  for (std::size_t p = 0; p + 1 < kCount; ++p) {
+    const double width = edges[p + 1] - edges[p];
+    if (width < 1e-12) continue;
+    for (int i = 0; i < rule.size(); ++i)
+      visit(edges[p] + width * smooth_step(rule.node[i]),
+            width * smooth_step_slope(rule.node[i]) * rule.weight[i]);
+  }
+}
+
 // Cosine of total reflection as seen from the film's exterior; 0 if there is none.
 double critical_cosine(const ThinFilm& film) {
   return std::sqrt(std::max(0.0, 1 - square(film.base_ior / film.exterior_ior)));
 }
+
+// The normals visible from w (azimuth 0), by stretching the surface to roughness 1, where their density over
+// half the angle between w and its mirror image is uniform (Heitz 2018): polar angle about the stretched w,
+// azimuth towards the horizon nearest to it. A normal's cosine with w is |stretched w| cos(polar) / |k|, with
+// k = k0 cos(polar) + k1(azimuth) sin(polar) the normal before normalisation.
+class VisibleNormals {
+ public:
+  VisibleNormals(const Vec3& w, double alpha, double critical)
+      : w_(w),
+        alpha_(alpha),
+        critical_(critical),
+        stretched_length_(std::hypot(alpha * w.x, w.z)),
+        axis_{alpha * w.x / stretched_length_, 0, w.z / stretched_length_} {}
+
+  Vec3 normal(double polar, double azimuth) const {
+    const Vec3 k = std::cos(polar) * k0() + std::sin(polar) * k1(azimuth);
+    return normalize({k.x, k.y, std::max(0.0, k.z)});
+  }
+
+  // Over polar angle and azimuth in [0, pi].
+  double density(double polar) const { return 2 * std::sin(2 * polar) / (kPi * (1 + axis_.z)); }
+
+  // Azimuths between which the bounds of polar_edges() are smooth: the horizon is met up to pi / 2, the cone
+  // of total reflection is touched by, and leaves the horizon at, one azimuth each.
+  std::array<double, 5> azimuth_edges() const {
+    std::array<double, 5> edges{0, kPi / 2, kPi, 0, 0};
+    const double outside = dot(k0(), k0()) - square(stretched_length_ / critical_);
+    if (critical_ > 0 && outside > 0) {
+      const double slope = square(axis_.x) * (1 - square(alpha_));
+      const double cos2 =
+          outside * square(alpha_) / (square(axis_.z) * slope * (1 - square(alpha_)) - outside * slope);
+      if (cos2 > 0 && cos2 < 1) edges[3] = std::acos(std::sqrt(cos2));
+    }
+    if (critical_ > 0 && w_.x > critical_) {
+      const double cosine = critical_ / w_.x;
+      edges[4] = std::atan2(std::sqrt(1 - square(cosine)), cosine * axis_.z);
+    }
+    std::sort(edges.begin(), edges.end());
+    return edges;
+  }
+
+  // 0, where total reflection ends and begins again, the horizon; ascending.
+  std::array<double, 4> polar_edges(double azimuth) const {
+    const double end = std::atan2(axis_.z, std::max(0.0, axis_.x * std::cos(azimuth)));
+    std::array<double, 4> edges{0, 0, end, end};
+    if (critical_ == 0) return edges;
+    const double a = dot(k1(azimuth), k1(azimuth)), b = dot(k0(), k1(azimuth));
+    const double discriminant = b * b - a * (dot(k0(), k0()) - square(stretched_length_ / critical_));
+    const double root = std::sqrt(std::max(0.0, discriminant));
+    edges[1] = std::clamp(std::atan((-b - root) / a), 0.0, end);
+    edges[2] = std::clamp(std::atan((-b + root) / a), 0.0, end);
+    return edges;
+  }
+
+  // Up to where w is mirrored above the horizon: a convex set of normals, which holds the axis and no rim.
+  double mirrored_end(double azimuth, double end) const {
+    double low = 0, high = end;
+    for (int step = 0; step < 40; ++step) {
+      const double middle = (low + high) / 2;
+      (reflect(w_, normal(middle, azimuth)).z > 0 ? low : high) = middle;
+    }
+    return low;
+  }
+
+ private:
+  Vec3 k0() const { return {alpha_ * axis_.x, 0, axis_.z}; }
+  Vec3 k1(double azimuth) const {
+    const double c = std::cos(azimuth);
+    return {alpha_ * c * axis_.z, alpha_ * std::sin(azimuth), -c * axis_.x};
+  }
+
+  Vec3 w_;
+  double alpha_, critical_, stretched_length_;
+  Vec3 axis_;
+};
 
 double min_component(const Rgb& a) { return std::min({a.r, a.g, a.b}); }
 
@@ -38,7 +125,9 @@ FilmIntegrals::FilmIntegrals(const Material& material, const Rgb& wavelengths_nm
       cosine_panel_(resolution.cosines),
       fine_(gauss_legendre(kFineNodes)),
       normals_(gauss_legendre(resolution.normals)),
-      azimuths_(gauss_legendre(resolution.azimuths)) {}
+      azimuths_(gauss_legendre(resolution.azimuths)),
+      visible_(gauss_legendre(visible_nodes())),
+      visible_azimuths_(gauss_legendre(visible_nodes() * 3 / 4)) {}
 
 // Phase difference of neighbouring reflections, radians, at the shortest wavelength.
 double FilmIntegrals::phase(const ThinFilm& film, double cosine) const {
@@ -51,28 +140,29 @@ int FilmIntegrals::oscillation_panels(const ThinFilm& film, double low, double h
   return 1 + static_cast<int>((phase(film, high) - phase(film, low)) / kPhaseStep);
 }
 
-// Calls visit(facet, weight) for normals visible from w; weights sum to 1. Polar angle and azimuth of the
-// spherical cap that Ggx::sample_visible maps to normals: the integrand is smooth in both, even in the
-// azimuth.
-template <class F>
-void FilmIntegrals::visit_visible(const Vec3& w, F visit) const {
-  const Vec3 from = direction_from_cosine(w.z, 0);
-  const double stretched_z = w.z / std::hypot(ggx_.alpha() * from.x, w.z);
+// More where a wide lobe sees a thick film oscillate.
+int FilmIntegrals::visible_nodes() const {
   const double waves = (phase(film_, 1) - phase(film_, 0)) * std::min(1.0, 4 * ggx_.alpha());
-  const int count = std::min(resolution_.visible + static_cast<int>(kVisibleNodesPerRadian * waves),
-                             std::max(kMaxVisibleNodes, resolution_.visible));
-  const GaussRule polar = gauss_legendre(count);
-  const double top = std::acos(-stretched_z);
-  for (int i = 0; i < count; ++i) {
-    const double theta = top * polar.node[i];
-    const double weight = top * polar.weight[i] * std::sin(theta) / (1 + stretched_z) / count;
-    for (int k = 0; k < count; ++k) {
-      const Vec3 h = ggx_.sample_visible(
-          from, {(k + 0.5) / (2 * count), 2 * square(std::sin(theta / 2)) / (1 + stretched_z)});
-      const FilmPower power = interface_.power(std::clamp(sunbeam::dot(from, h), 0.0, 1.0));
-      visit(from, Facet{h, power, mean(power.reflectance)}, weight);
-    }
-  }
+  const int wanted = resolution_.visible + static_cast<int>(kVisibleNodesPerRadian * waves);
+  return std::min(wanted, std::max(kMaxVisibleNodes, resolution_.visible));
+}
+
+// Calls visit(w, facet, weight) for normals visible from w, turned to azimuth 0; the weights of all normals
+// sum to 1. What mirrors w under the horizon is left out if only_mirrored, without a kink for the quadrature.
+template <class F>
+void FilmIntegrals::visit_visible(const Vec3& w, bool only_mirrored, F visit) const {
+  const Vec3 from = direction_from_cosine(w.z, 0);
+  const VisibleNormals visible(from, ggx_.alpha(), critical_cosine(film_));
+  for_each_node(visible.azimuth_edges(), visible_azimuths_, [&](double azimuth, double dazimuth) {
+    auto edges = visible.polar_edges(azimuth);
+    const double end = only_mirrored ? visible.mirrored_end(azimuth, edges.back()) : edges.back();
+    for (double& edge : edges) edge = std::min(edge, end);
+    for_each_node(edges, visible_, [&](double polar, double dpolar) {
+      const Vec3 h = visible.normal(polar, azimuth);
+      const FilmPower power = interface_.power(std::clamp(dot(from, h), 0.0, 1.0));
+      visit(from, Facet{h, power, mean(power.reflectance)}, visible.density(polar) * dpolar * dazimuth);
+    });
+  });
 }
 
 std::vector<PassagePoint> FilmIntegrals::passages(const Vec3& w) const {
@@ -85,7 +175,7 @@ std::vector<PassagePoint> FilmIntegrals::passages(const Vec3& w) const {
     return points;
   }
   if (has_single_crossing()) points.push_back({w.z, Rgb()});
-  visit_visible(w, [&](const Vec3& from, const Facet& facet, double weight) {
+  visit_visible(w, false, [&](const Vec3& from, const Facet& facet, double weight) {
     const auto passage = interface_.cross(from, facet);
     if (!passage) return;
     if (has_single_crossing())
@@ -100,7 +190,7 @@ Rgb FilmIntegrals::first_albedo(const Vec3& w) const {
   if (w.z <= 0) return {};
   if (interface_.is_smooth()) return interface_.power(w.z).reflectance;
   Rgb sum;
-  visit_visible(w, [&](const Vec3& from, const Facet& facet, double weight) {
+  visit_visible(w, true, [&](const Vec3& from, const Facet& facet, double weight) {
     if (const auto up = interface_.reflect_up(from, facet)) sum += up->weight * weight;
   });
   return sum;

@@ -20,7 +20,7 @@ struct ExactResolution {
   int normals = 24;    // facets: polar angle of the normal,
   int cosines = 12;    //         a panel of the direction's cosine with it, at most 24,
   int azimuths = 16;   //         the direction's azimuth about it
-  int visible = 32;    // normals visible from one direction: polar, and as many azimuths
+  int visible = 28;    // normals visible from one direction: polar, and 3/4 of it a panel of azimuths
 };
 
 // Power arriving along w that reaches the base at `cosine`.
@@ -60,11 +60,12 @@ class FilmIntegrals {
 
   const ThinFilm& film_of(Event event) const { return event == Event::passage ? film_ : film_below_; }
   double phase(const ThinFilm& film, double cosine) const;
+  int visible_nodes() const;
   int oscillation_panels(const ThinFilm& film, double low, double high) const;
   std::vector<Rgb> moments(Event event, double low, double high) const;
   void add_smooth_reflection(double low, double high, std::array<Matrix, 3>& sum) const;
   template <class F>
-  void visit_visible(const Vec3& w, F visit) const;
+  void visit_visible(const Vec3& w, bool only_mirrored, F visit) const;
   template <class F>
   void visit_facets(Event event, F visit) const;
   template <class F>
@@ -80,7 +81,7 @@ class FilmIntegrals {
   Ggx ggx_;
   CosineBasis basis_;
   GaussInterpolation cosine_panel_;
-  GaussRule fine_, normals_, azimuths_;
+  GaussRule fine_, normals_, azimuths_, visible_, visible_azimuths_;
 };
 
 }  // namespace sunbeam

@@ -41,15 +41,17 @@ struct ConfigTable::Node {
 
 namespace {
 
-std::string kind_of(const toml::node& node) {
-  std::ostringstream text;
-  text << node.type();
-  return text.str();
+// What was found, for messages: a number itself, else its kind.
+std::string describe(const toml::node& node) {
+  if (node.is_number()) return fmt::format("{}", *node.value<double>());
+  return node.is_string()    ? "a string"
+         : node.is_boolean() ? "a boolean"
+         : node.is_array()   ? "a list"
+         : node.is_table()   ? "a section"
+                             : "a date or time";
 }
 
-std::string range_text(const Range& allowed) {
-  return fmt::format("{:g} to {:g}", allowed.low, allowed.high);
-}
+std::string range_text(const Range& allowed) { return fmt::format("{} to {}", allowed.low, allowed.high); }
 
 // The value of an override: TOML if it parses as such, else a bare string.
 toml::table parse_value(const std::string& value) {
@@ -141,23 +143,23 @@ double ConfigTable::number(std::string_view key, const Range& allowed, std::opti
   if (!node) fail(key, fmt::format("is missing; allowed: a number, {}", range_text(allowed)));
   const auto value = node->value<double>();
   if (!node->is_number() || !value)
-    fail(key, fmt::format("found a {}; allowed: a number, {}", kind_of(*node), range_text(allowed)));
+    fail(key, fmt::format("found {}; allowed: a number, {}", describe(*node), range_text(allowed)));
   if (!std::isfinite(*value) || *value < allowed.low || *value > allowed.high)
-    fail(key, fmt::format("found {:g}; allowed: {}", *value, range_text(allowed)));
+    fail(key, fmt::format("found {}; allowed: {}", *value, range_text(allowed)));
   return *value;
 }
 
 int ConfigTable::integer(std::string_view key, int low, int high, std::optional<int> fallback) const {
   const double value = number(key, {static_cast<double>(low), static_cast<double>(high)}, fallback);
   if (value != std::floor(value))
-    fail(key, fmt::format("found {:g}; allowed: a whole number, {} to {}", value, low, high));
+    fail(key, fmt::format("found {}; allowed: a whole number, {} to {}", value, low, high));
   return static_cast<int>(value);
 }
 
 bool ConfigTable::boolean(std::string_view key, bool fallback) const {
   const toml::node* node = node_->ask(key);
   if (!node) return fallback;
-  if (!node->is_boolean()) fail(key, fmt::format("found a {}; allowed: true or false", kind_of(*node)));
+  if (!node->is_boolean()) fail(key, fmt::format("found {}; allowed: true or false", describe(*node)));
   return *node->value<bool>();
 }
 
@@ -165,7 +167,7 @@ std::string ConfigTable::string(std::string_view key, std::optional<std::string>
   const toml::node* node = node_->ask(key);
   if (!node && fallback) return *fallback;
   if (!node) fail(key, "is missing; allowed: a string");
-  if (!node->is_string()) fail(key, fmt::format("found a {}; allowed: a string", kind_of(*node)));
+  if (!node->is_string()) fail(key, fmt::format("found {}; allowed: a string", describe(*node)));
   return *node->value<std::string>();
 }
 
@@ -182,15 +184,15 @@ int ConfigTable::choice(std::string_view key, const std::vector<std::string>& al
 std::vector<double> ConfigTable::numbers(std::string_view key, const Range& allowed) const {
   const toml::node* node = node_->ask(key);
   if (!node || !node->is_array())
-    fail(key, fmt::format("allowed: a list of numbers, each {}", range_text(allowed)));
+    fail(key, fmt::format("{}; allowed: a list of numbers, each {}",
+                          node ? "found " + describe(*node) : "is missing", range_text(allowed)));
   std::vector<double> result;
   for (const auto& element : *node->as_array()) {
     const auto value = element.value<double>();
     if (!element.is_number() || !value || !std::isfinite(*value) || *value < allowed.low ||
         *value > allowed.high)
-      fail(key,
-           fmt::format("element {} is {}; allowed: numbers, each {}", result.size() + 1,
-                       value ? fmt::format("{:g}", *value) : "a " + kind_of(element), range_text(allowed)));
+      fail(key, fmt::format("element {} is {}; allowed: numbers, each {}", result.size() + 1,
+                            describe(element), range_text(allowed)));
     result.push_back(*value);
   }
   return result;
@@ -214,7 +216,7 @@ Rgb ConfigTable::rgb(std::string_view key, const Range& allowed, std::optional<R
 
 ConfigTable ConfigTable::table(std::string_view key) const {
   const toml::node* node = node_->ask(key);
-  if (node && !node->is_table()) fail(key, fmt::format("found a {}; allowed: a section", kind_of(*node)));
+  if (node && !node->is_table()) fail(key, fmt::format("found {}; allowed: a section", describe(*node)));
   static const toml::table empty;
   return ConfigTable(node_->child(node ? *node->as_table() : empty, node_->full_key(key)));
 }
@@ -223,10 +225,10 @@ std::vector<ConfigTable> ConfigTable::tables(std::string_view key) const {
   const toml::node* node = node_->ask(key);
   std::vector<ConfigTable> result;
   if (!node) return result;
-  if (!node->is_array()) fail(key, fmt::format("found a {}; allowed: [[{}]] entries", kind_of(*node), key));
+  if (!node->is_array()) fail(key, fmt::format("found {}; allowed: [[{}]] entries", describe(*node), key));
   for (const auto& element : *node->as_array()) {
     if (!element.is_table())
-      fail(key, fmt::format("entry {} is a {}; allowed: a table", result.size() + 1, kind_of(element)));
+      fail(key, fmt::format("entry {} is {}; allowed: a table", result.size() + 1, describe(element)));
     result.push_back(ConfigTable(
         node_->child(*element.as_table(), fmt::format("{}[{}]", node_->full_key(key), result.size()))));
   }

@@ -20,7 +20,9 @@ class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& target)
       : target_(target), path_(target + ".tmp" + std::to_string(::getpid())) {
-    if (std::filesystem::is_directory(target)) throw Error(target + ": cannot write: it is a folder");
+    std::error_code ignored;
+    if (std::filesystem::is_directory(target, ignored))
+      throw Error(target + ": cannot write: it is a folder");
     descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (descriptor_ < 0) fail();
   }

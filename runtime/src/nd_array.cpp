@@ -40,8 +40,9 @@ Corners corners(const NdArray& array, std::span<const double> x) {
 }  // namespace
 
 float round_to(Precision precision, double value) {
-  const auto single = static_cast<float>(value) + 0.0f;
-  return precision == Precision::half_float ? static_cast<float>(Imath::half(single)) : single;
+  const auto single = static_cast<float>(value);
+  const float rounded = precision == Precision::half_float ? static_cast<float>(Imath::half(single)) : single;
+  return rounded + 0.0f;  // -0 becomes 0
 }
 
 NdArray::NdArray(std::string name, std::vector<Axis> axes, Precision precision)

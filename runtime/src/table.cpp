@@ -17,7 +17,10 @@ bool Table::operator==(const Table& other) const {
 
 RestFrame::Terms RestFrame::terms(double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const {
   constexpr double kLargestDecay = 12;
-  const double m_i = material_.cosine_below(cos_i), m_o = material_.cosine_below(cos_o);
+  // Beyond the critical angle of a base thinner than the exterior nothing arrives; any finite frame will do.
+  constexpr double kSmallestCosine = 1e-6;
+  const double m_i = std::max(material_.cosine_below(cos_i), kSmallestCosine);
+  const double m_o = std::max(material_.cosine_below(cos_o), kSmallestCosine);
   return {scale_ * t_i * t_o, material_.albedo * (kInvPi * std::exp(material_.absorption_exponent(m_i, m_o))),
           std::exp(-std::min(material_.optical_depth() * (1 / m_i + 1 / m_o), kLargestDecay))};
 }

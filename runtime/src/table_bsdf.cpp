@@ -11,7 +11,8 @@ constexpr std::size_t kCurveNodes = 129;
 constexpr std::size_t kSamplingNodes = 33;  // over cos(theta_o)
 constexpr std::size_t kMarginalBins = 32;   // over cos(theta_i)
 constexpr std::size_t kAzimuthNodes = 16;   // quadrature, only where the table has azimuth
-constexpr std::size_t kNormalNodes = 24;    // quadrature over visible normals, each way
+constexpr int kNormalNodes = 96;            // quadrature over visible normals, each way, for an albedo
+constexpr int kSamplingNormalNodes = 16;    // the same for the chance of sampling the first surface
 constexpr double kSmallestCosine = 1e-4;    // sampling data near grazing are taken here
 
 Parameters checked(const Table& table, const Parameters& parameters, OutsideGrid outside) {
@@ -63,7 +64,7 @@ TableBsdf::TableBsdf(const Table& table, const Parameters& parameters, OutsideGr
   first_chance_ = sampled_curve(kSamplingNodes, [&](double c) {
     const Vec3 wo = direction_from_cosine(std::max(c, kSmallestCosine), 0);
     const double rest = mean(rest_albedo(wo, &marginal));
-    const double first = mean(first_albedo(wo));
+    const double first = mean(first_albedo(wo, kSamplingNormalNodes));
     rest_marginals_[node++] = PiecewiseConstant(marginal);
     return Rgb(first + rest > 0 ? first / (first + rest) : 0.5);
   });
@@ -90,18 +91,21 @@ Rgb TableBsdf::rest_stderr(const Vec3& wo, const Vec3& wi) const {
 
 // Int f_first cos dwi by midpoints in the unit square of visible normals, which turns it into a mean of R
 // G2/G1.
-Rgb TableBsdf::first_albedo(const Vec3& wo) const {
+Rgb TableBsdf::albedo(const Vec3& wo) const {
+  return first_albedo(wo, kNormalNodes) + rest_albedo(wo, nullptr);
+}
+
+Rgb TableBsdf::first_albedo(const Vec3& wo, int nodes) const {
   if (material_.is_smooth()) return reflectance_(wo.z);
   Rgb sum;
-  for (std::size_t i = 0; i < kNormalNodes; ++i)
-    for (std::size_t j = 0; j < kNormalNodes; ++j) {
-      const Point2 u{(static_cast<double>(i) + 0.5) / kNormalNodes,
-                     (static_cast<double>(j) + 0.5) / kNormalNodes};
+  for (int i = 0; i < nodes; ++i)
+    for (int j = 0; j < nodes; ++j) {
+      const Point2 u{(i + 0.5) / nodes, (j + 0.5) / nodes};
       const Vec3 h = ggx_.sample_visible(wo, u);
       const Vec3 wi = reflect(wo, h);
       if (wi.z > 0) sum += reflectance_(dot(wo, h)) * ggx_.g2_over_g1(wo, wi);
     }
-  return sum / (kNormalNodes * kNormalNodes);
+  return sum / (nodes * nodes);
 }
 
 // Int f_rest cos dwi by four-point Gauss-Legendre in each bin of cos(theta_i); the bins' mean values are the

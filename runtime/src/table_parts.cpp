@@ -90,8 +90,6 @@ Table build(const TableParts& parts) {
   if (version != std::to_string(kTableSchemaVersion))
     throw Error("schema version is '" + version + "'; this reader knows " +
                 std::to_string(kTableSchemaVersion));
-  if (require(parts.attributes, "content_hash") != parts_hash(parts))
-    throw Error("content does not match its hash: the file is damaged");
   Table table;
   for (const auto& key : material_keys())
     set_from_text(table.material, key, require(parts.attributes, "material." + key));
@@ -105,6 +103,8 @@ Table build(const TableParts& parts) {
   table.remainder = checked_array(parts, "remainder", kRestAxes);
   table.rest_stderr = checked_array(parts, "rest_stderr", kRestAxes);
   check_ranges(table);
+  if (require(parts.attributes, "content_hash") != parts_hash(parts))
+    throw Error("content does not match its hash: the file is damaged");
   for (const char* key : kRequiredInfo) table.info[key] = require(parts.attributes, key);
   for (const auto& [key, value] : parts.attributes)
     if (key.starts_with("error.")) table.info[key] = value;
@@ -153,6 +153,8 @@ std::vector<Axis> parse_axes(const Attributes& attributes, const std::string& ar
 }
 
 TableParts to_parts(const Table& table) {
+  for (const NdArray* array : {&table.film_reflectance, &table.remainder, &table.rest_stderr})
+    if (array->empty()) throw Error("an empty table cannot be written");
   TableParts parts;
   parts.attributes = table.info;
   parts.attributes["schema_version"] = std::to_string(kTableSchemaVersion);

@@ -19,9 +19,12 @@ struct DirectionPair {
   Vec3 wo, wi;
 };
 
+// In [0, 2 pi).
 inline double azimuth(const Vec3& w) {
   const double phi = std::atan2(w.y, w.x);
-  return phi < 0 ? phi + 2 * kPi : phi;
+  if (phi >= 0) return phi;
+  const double wrapped = phi + 2 * kPi;
+  return wrapped < 2 * kPi ? wrapped : 0;  // a tiny negative angle would round to 2 pi
 }
 
 inline AngleCoordinates to_coordinates(Symmetry symmetry, const DirectionPair& pair) {

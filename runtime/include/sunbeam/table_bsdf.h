@@ -56,10 +56,10 @@ class TableBsdf final : public Bsdf {
   Rgb dirac(const Vec3& wo) const { return material_.is_smooth() ? reflectance_(wo.z) : Rgb(); }
 
   // Directional-hemispherical reflectance by quadrature, Dirac included.
-  Rgb albedo(const Vec3& wo) const { return first_albedo(wo) + rest_albedo(wo, nullptr); }
+  Rgb albedo(const Vec3& wo) const;
 
  private:
-  Rgb first_albedo(const Vec3& wo) const;
+  Rgb first_albedo(const Vec3& wo, int nodes) const;
   Rgb rest_albedo(const Vec3& wo, std::vector<double>* marginal) const;
   double first_chance(double cos_o) const;
   double rest_pdf(double cos_o, double cos_i) const;

@@ -1,0 +1,27 @@
+// CIE 1931 2-degree standard colorimetric observer and illuminants D65 and E, 380 to 780 nm.
+//
+// The numbers are those of the official tables at 5 nm in CIE 015:2018: colour-matching functions of ISO/CIE
+// 11664-1 (also DOI 10.25039/CIE.DS.xvudnb9b) and D65 of ISO/CIE 11664-2 (also DOI 10.25039/CIE.DS.hjfjmt59).
+// Between entries the observer follows the cubic through the four nearest entries, as CIE 167:2005 suggests,
+// and D65 the straight line on which its standard is built.
+#pragma once
+
+#include "sunbeam/core/vec.h"
+
+namespace sunbeam {
+
+enum class Illuminant { d65, e };
+
+inline constexpr double kShortestVisibleNm = 380;
+inline constexpr double kLongestVisibleNm = 780;
+
+// x-bar, y-bar, z-bar at a wavelength in nm: dimensionless, y-bar = 1 at 555 nm, zero outside 380 to 780 nm.
+Vec3 observer(double wavelength_nm);
+
+// Relative power per nm: D65 is 100 at 560 nm, E is 100 everywhere; zero outside 380 to 780 nm.
+double illuminant_power(Illuminant illuminant, double wavelength_nm);
+
+// Tristimulus values of the illuminant itself with Y = 1: the sum of 401 terms from 380 to 780 nm.
+Vec3 illuminant_white(Illuminant illuminant);
+
+}  // namespace sunbeam

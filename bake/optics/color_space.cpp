@@ -1,0 +1,96 @@
+#include "bake/optics/color_space.h"
+
+namespace sunbeam {
+namespace {
+
+struct Chromaticity {
+  double x, y;
+};
+struct SpaceDefinition {
+  Chromaticity red, green, blue, white;
+};
+
+constexpr SpaceDefinition definition(ColorSpace space) {
+  if (space == ColorSpace::acescg)
+    return {{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, {0.32168, 0.33767}};
+  return {{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {0.3127, 0.3290}};
+}
+
+// Tristimulus values with Y = 1.
+constexpr Vec3 tristimulus(const Chromaticity& c) { return {c.x / c.y, 1, (1 - c.x - c.y) / c.y}; }
+
+ColorMatrix from_columns(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return {{{a.x, b.x, c.x}, {a.y, b.y, c.y}, {a.z, b.z, c.z}}};
+}
+
+ColorMatrix diagonal(const Vec3& d) { return {{{d.x, 0, 0}, {0, d.y, 0}, {0, 0, d.z}}}; }
+
+// XYZ to the sharpened cone responses of Bradford's transform.
+constexpr ColorMatrix kBradford = {
+    {{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
+
+}  // namespace
+
+Rgb ColorMatrix::operator*(const Rgb& c) const {
+  const Vec3 v = *this * Vec3{c.r, c.g, c.b};
+  return {v.x, v.y, v.z};
+}
+
+ColorMatrix ColorMatrix::operator*(const ColorMatrix& other) const {
+  ColorMatrix product;
+  for (int i = 0; i < 3; ++i)
+    product.row[i] = row[i].x * other.row[0] + row[i].y * other.row[1] + row[i].z * other.row[2];
+  return product;
+}
+
+ColorMatrix inverse(const ColorMatrix& matrix) {
+  const Vec3 *a = matrix.row, bc = cross(a[1], a[2]), ca = cross(a[2], a[0]), ab = cross(a[0], a[1]);
+  const double determinant = dot(a[0], bc);
+  return from_columns(bc / determinant, ca / determinant, ab / determinant);
+}
+
+Vec3 white(ColorSpace space) { return tristimulus(definition(space).white); }
+
+ColorMatrix rgb_to_xyz(ColorSpace space) {
+  const SpaceDefinition d = definition(space);
+  const ColorMatrix primaries = from_columns(tristimulus(d.red), tristimulus(d.green), tristimulus(d.blue));
+  return primaries * diagonal(inverse(primaries) * white(space));
+}
+
+ColorMatrix bradford(const Vec3& from, const Vec3& to) {
+  const Vec3 a = kBradford * from, b = kBradford * to;
+  return inverse(kBradford) * diagonal({b.x / a.x, b.y / a.y, b.z / a.z}) * kBradford;
+}
+
+ColorMatrix xyz_to_rgb(Illuminant illuminant, ColorSpace space) {
+  return inverse(rgb_to_xyz(space)) * bradford(illuminant_white(illuminant), white(space));
+}
+
+ColorMatrix rgb_to_rgb(ColorSpace from, ColorSpace to) {
+  if (from == to) return diagonal({1, 1, 1});
+  return inverse(rgb_to_xyz(to)) * bradford(white(from), white(to)) * rgb_to_xyz(from);
+}
+
+double luminance(const Rgb& color, ColorSpace space) {
+  return dot(rgb_to_xyz(space).row[1], {color.r, color.g, color.b});
+}
+
+GamutClip clip_negative(const Rgb& color, ColorSpace space) {
+  GamutClip result;
+  result.clipped = transform(color, [](double c) { return c < 0 ? 0 : c; });
+  result.added = result.clipped - color;
+  result.luminance_added = luminance(result.added, space);
+  return result;
+}
+
+Rgb ClipAccount::clip(const Rgb& color, ColorSpace space) {
+  const GamutClip result = clip_negative(color, space);
+  ++colors;
+  if (!is_black(result.added)) ++clipped;
+  lowest = std::min({lowest, color.r, color.g, color.b});
+  luminance += sunbeam::luminance(color, space);
+  luminance_added += result.luminance_added;
+  return result.clipped;
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,70 @@
+// Linear RGB spaces, chromatic adaptation and what happens to colours outside a gamut.
+//
+// Policy. Narrow-band (iridescent) spectra can lie outside Rec.709, whose components then leave [0, 1].
+// Components keep their sign everywhere inside; nothing in this project clips on its own. ACEScg holds the
+// colours of thin films without negative components and is the recommended space for tables. Conversion
+// happens at the edge, and who must drop negative components there does it with ClipAccount, which says how
+// much light that added.
+#pragma once
+
+#include <cstdint>
+
+#include "bake/optics/cie.h"
+#include "sunbeam/core/vec.h"
+
+namespace sunbeam {
+
+// rec709: ITU-R BT.709-6 primaries, white x, y = 0.3127, 0.3290.
+// acescg: AP1 primaries, white x, y = 0.32168, 0.33767 (AMPAS S-2014-004).
+enum class ColorSpace { rec709, acescg };
+
+// Rows of a linear map between tristimulus values or linear colours.
+struct ColorMatrix {
+  Vec3 row[3];
+
+  Vec3 operator*(const Vec3& v) const { return {dot(row[0], v), dot(row[1], v), dot(row[2], v)}; }
+  Rgb operator*(const Rgb& c) const;
+  ColorMatrix operator*(const ColorMatrix& other) const;
+};
+ColorMatrix inverse(const ColorMatrix& matrix);
+
+// Tristimulus values of the space's own white, Y = 1.
+Vec3 white(ColorSpace space);
+
+// Linear RGB to XYZ relative to the space's own white: RGB (1, 1, 1) is `white(space)`.
+ColorMatrix rgb_to_xyz(ColorSpace space);
+
+// Bradford's adaptation of XYZ seen under `from` to XYZ seen under `to` (CIE 160:2004; Lam 1985).
+ColorMatrix bradford(const Vec3& from, const Vec3& to);
+
+// XYZ measured under the illuminant (a perfect white diffuser has illuminant_white()) to linear RGB, adapted
+// to the white of the space: the white diffuser is (1, 1, 1) whatever the illuminant.
+ColorMatrix xyz_to_rgb(Illuminant illuminant, ColorSpace space);
+
+// Linear RGB of one space to another, adapted from white to white: (1, 1, 1) stays (1, 1, 1).
+ColorMatrix rgb_to_rgb(ColorSpace from, ColorSpace to);
+
+// Y of a linear colour; that of (1, 1, 1) is 1.
+double luminance(const Rgb& color, ColorSpace space);
+
+// A colour with its negative components raised to zero. Raising adds light: `added` holds the amounts (all
+// >= 0) and `luminance_added` their luminance.
+struct GamutClip {
+  Rgb clipped;
+  Rgb added;
+  double luminance_added = 0;
+};
+GamutClip clip_negative(const Rgb& color, ColorSpace space);
+
+// Clips many colours and keeps the account, for a report.
+struct ClipAccount {
+  std::int64_t colors = 0;     // seen
+  std::int64_t clipped = 0;    // of these with a negative component
+  double lowest = 0;           // most negative component
+  double luminance = 0;        // sum before clipping
+  double luminance_added = 0;  // sum by clipping
+
+  Rgb clip(const Rgb& color, ColorSpace space);
+};
+
+}  // namespace sunbeam

@@ -1,0 +1,107 @@
+// The bake as a function of recipe and seed.
+#include "bake/version.h"
+#include "sunbeam/table_io.h"
+#include "sunbeam/table_vdb.h"
+#include "tests/accuracy/support.h"
+
+namespace sunbeam {
+namespace {
+
+test::SmallRecipe gridded() {
+  test::SmallRecipe recipe;
+  recipe.grid = "film_thickness_nm = [300, 330, 360]\nabsorption_per_nm = [0.1, 0.2]";
+  recipe.cosines = 6;
+  recipe.noise = 0.03;
+  return recipe;
+}
+
+Table bake(const test::SmallRecipe& recipe, std::uint64_t seed, int threads) {
+  return bake_table(recipe.recipe(), {.seed = seed, .threads = threads, .on_progress = {}});
+}
+
+TEST(Bake, SameBitsForEveryThreadCount) {
+  const Table one = bake(gridded(), 1, 1), two = bake(gridded(), 1, 2), all = bake(gridded(), 1, 0);
+  EXPECT_TRUE(one == two);
+  EXPECT_TRUE(one == all);
+  EXPECT_TRUE(table_exr_bytes(one) == table_exr_bytes(two));
+  EXPECT_TRUE(table_vdb_bytes(one) == table_vdb_bytes(two));
+}
+
+TEST(Bake, OtherSeedOtherNoise) {
+  const Table one = bake(gridded(), 1, 0), other = bake(gridded(), 2, 0);
+  EXPECT_FALSE(one.remainder == other.remainder);
+  EXPECT_TRUE(one.film_reflectance == other.film_reflectance);  // closed form
+  EXPECT_TRUE(one.film_transmittance == other.film_transmittance);
+}
+
+// Its own random numbers for every parameter node: nodes that differ in nothing physical differ in noise. A
+// clear straight film over a grid of base indices would repeat itself otherwise.
+TEST(Bake, NodesHaveTheirOwnNoise) {
+  const Table table = bake(gridded(), 1, 0);
+  const std::size_t stride = table.remainder.stride(0);
+  const auto noise = [&](std::size_t node, std::size_t cell) {
+    return table.rest_stderr.get(node * stride + cell);
+  };
+  int equal = 0;
+  for (std::size_t cell = 0; cell < stride; ++cell) equal += noise(0, cell) == noise(1, cell);
+  EXPECT_LT(equal, static_cast<int>(stride) / 10);
+}
+
+TEST(Bake, InfoIsComplete) {
+  const Table table = bake(gridded(), 5, 0);
+  EXPECT_EQ(table.info.at("seed"), "5");
+  EXPECT_EQ(table.info.at("estimator"), "pfmc-unidirectional");
+  EXPECT_EQ(table.info.at("spectrum"), "rgb3");
+  EXPECT_EQ(table.info.at("encoding"), "dense");
+  EXPECT_EQ(table.info.at("tool_version"), kToolVersion);
+  EXPECT_EQ(table.info.at("recipe_hash"), gridded().recipe().hash);
+  // 6 nodes x 6 rows of at least 512 walks; the recipe in the table is the recipe.
+  EXPECT_GE(std::stoull(table.info.at("samples")), 6u * 6u * 512u);
+  EXPECT_EQ(parse_recipe(table.info.at("recipe"), "again").hash, table.info.at("recipe_hash"));
+}
+
+TEST(Bake, SurvivesBothFileForms) {
+  const Table table = bake(gridded(), 1, 0);
+  EXPECT_TRUE(parse_table_exr(table_exr_bytes(table), "t") == table);
+  EXPECT_TRUE(parse_table_vdb(table_vdb_bytes(table), "t") == table);
+}
+
+// Half precision changes every value by at most 2^-11 of it (or half the smallest half, 3e-8).
+TEST(Bake, HalvesAreTheSameValuesRounded) {
+  const Table single = bake(gridded(), 1, 0);
+  const Table half = bake_table(parse_recipe(gridded().text(), "half", {"table.precision=half"}),
+                                {.seed = 1, .threads = 0, .on_progress = {}});
+  ASSERT_EQ(half.remainder.precision(), Precision::half_float);
+  const auto a = single.remainder.values(), b = half.remainder.values();
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) ASSERT_NEAR(a[k], b[k], 0x1p-11 * std::abs(a[k]) + 3e-8);
+}
+
+// A rest without any azimuth, baked with three: the same in all of them, to noise.
+TEST(Bake, AzimuthsOfAnIsotropicFilmAgree) {
+  const Table table = bake_table(parse_recipe(gridded().text(), "azimuths", {"table.azimuths=3"}),
+                                 {.seed = 1, .threads = 0, .on_progress = {}});
+  ASSERT_EQ(table.remainder.axes()[6].size(), 3u);
+  const TableBsdf bsdf(table, {300, 1.4, 0.1}, OutsideGrid::refuse);
+  for (const double cosine : {0.208, 0.604, 1.0}) {
+    const Vec3 wi = direction_from_cosine(cosine, 0);
+    for (const double phi : {kPi / 2, kPi}) {
+      const Vec3 straight = direction_from_cosine(0.802, 0), turned = direction_from_cosine(0.802, phi);
+      const double error = std::hypot(bsdf.rest_stderr(straight, wi).g, bsdf.rest_stderr(turned, wi).g);
+      // 6 pairs at 5 standard errors.
+      EXPECT_NEAR(bsdf.rest(straight, wi).g, bsdf.rest(turned, wi).g, 5 * error) << cosine << ' ' << phi;
+      EXPECT_GT(error, 0);
+    }
+  }
+}
+
+TEST(Bake, ReportsProgress) {
+  std::vector<double> fractions;
+  bake_table(gridded().recipe(),
+             {.seed = 1, .threads = 2, .on_progress = [&](double f) { fractions.push_back(f); }});
+  ASSERT_EQ(fractions.size(), 6u);  // parameter nodes
+  EXPECT_EQ(*std::max_element(fractions.begin(), fractions.end()), 1);
+}
+
+}  // namespace
+}  // namespace sunbeam

@@ -1,0 +1,153 @@
+"""`sunbeam bake`: the same recipe gives the same bytes, and a table appears only when it is complete."""
+
+import resource
+import signal
+import subprocess
+import time
+import unittest
+
+import support
+
+
+class Reproducibility(support.CliTest):
+    @classmethod
+    def prepare(cls):
+        bakes = {
+            "one.exr": ("--threads", "1"),
+            "two.exr": ("--threads", "2"),
+            "one.vdb": ("--threads", "1"),
+            "two.vdb": ("--threads", "2"),
+            "other.exr": ("--threads", "1", "--seed", "2"),
+        }
+        cls.results = {
+            name: support.succeed_in(cls.folder, "bake", "tiny.toml", "-o", name, *options)
+            for name, options in bakes.items()
+        }
+
+    def bytes_of(self, name):
+        return (self.folder / name).read_bytes()
+
+    def test_exr_does_not_depend_on_threads(self):
+        self.assertEqual(self.bytes_of("one.exr"), self.bytes_of("two.exr"))
+
+    def test_vdb_does_not_depend_on_threads(self):
+        self.assertEqual(self.bytes_of("one.vdb"), self.bytes_of("two.vdb"))
+
+    def test_another_seed_gives_other_values(self):
+        self.assertNotEqual(self.bytes_of("one.exr"), self.bytes_of("other.exr"))
+        points = "theta_i_deg,theta_o_deg,phi_deg\n30,40,180\n"
+        one, other = (self.succeed("eval", table, "--points", "-", stdin=points).out
+                      for table in ("one.exr", "other.exr"))
+        self.assertNotEqual(support.rows_of(one)[0]["rest_r"], support.rows_of(other)[0]["rest_r"])
+
+    def test_nothing_but_the_tables_is_left(self):
+        self.assertEqual(self.names(), sorted(["tiny.toml", *self.results]))
+
+    def test_progress_and_summary_go_to_stderr(self):
+        for name, result in self.results.items():
+            with self.subTest(table=name):
+                self.assertEqual(result.out, "")
+                self.assertIn("100 %", result.err)
+                self.assertIn(f"{name}: {len(self.bytes_of(name))} bytes", result.err)
+
+
+class Overrides(support.CliTest):
+    """--set against the same values in a file."""
+
+    def test_set_gives_the_table_of_an_edited_recipe(self):
+        edited = support.TINY_RECIPE.replace("albedo = 0.1", "albedo = 0").replace("angles = 3", "angles = 2")
+        self.write("edited.toml", edited)
+        self.succeed("bake", "edited.toml", "-o", "edited.exr")
+        self.succeed("bake", "tiny.toml", "-o", "set.exr", "--set", "material.albedo=0", "--set", "table.angles=2")
+        self.assertEqual((self.folder / "set.exr").read_bytes(), (self.folder / "edited.exr").read_bytes())
+
+    def test_set_can_give_lists_sections_and_words(self):
+        self.succeed("bake", "tiny.toml", "-o", "rich.exr", *support.BLACK_BASE, "--set",
+                     "grid.base_ior=[1.4, 1.6]", "--set", "grid.film_thickness_nm={from=100, to=300, count=3}",
+                     "--set", "table.precision=float")
+        text = self.succeed("info", "rich.exr").out
+        self.assertRegex(text, r"axis +film_thickness_nm +3 nodes, 100 to 300 nm")
+        self.assertRegex(text, r"axis +base_ior +2 nodes, 1.4 to 1.6")
+
+
+class Completeness(support.CliTest):
+    """An older table stays as it was, byte for byte, and no temporary file is left."""
+
+    OLD = b"an older table"
+
+    def setUp(self):
+        self.write("old.exr", self.OLD)
+        self.before = self.names()
+
+    def check_untouched(self):
+        self.assertEqual((self.folder / "old.exr").read_bytes(), self.OLD)
+        self.assertEqual(self.names(), self.before)
+
+    def test_a_bad_recipe_leaves_the_old_table(self):
+        result = self.sunbeam("bake", "tiny.toml", "-o", "old.exr", "--set", "material.albedo=2")
+        self.check_refusal(result, "material.albedo")
+        self.check_untouched()
+
+    def test_a_full_disk_leaves_the_old_table(self):
+        """A limit on the size of files stands for the full disk: it allows the probe, not the table."""
+
+        def limit_file_size():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+
+        for name in ("old.exr", "new.exr", "new.vdb"):
+            with self.subTest(output=name):
+                result = self.sunbeam("bake", "tiny.toml", "-o", name, *support.BLACK_BASE,
+                                      preexec_fn=limit_file_size)
+                self.assertEqual(result.code, 2, result)
+                self.assertEqual(result.out, "", result)
+                errors = [line for line in result.err.splitlines() if line.startswith("sunbeam: error: ")]
+                self.assertEqual(len(errors), 1, result)
+                self.assertIn(name, errors[0])
+                self.assertIn("File too large", errors[0])
+                self.assertIn("bake 100 %", result.err, "the bake must have got as far as writing")
+                self.check_untouched()
+
+    def test_an_interrupted_bake_leaves_the_old_table(self):
+        long_bake = [support.BINARY, "bake", "tiny.toml", "-o", "old.exr", "--threads", "1", "--set",
+                     "grid.film_thickness_nm={from=0, to=1000, count=500}", "--set", "accuracy.noise=0.0001"]
+        for stop in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+            with self.subTest(signal=stop.name):
+                process = subprocess.Popen(long_bake, cwd=self.folder, stderr=subprocess.PIPE)
+                try:
+                    started = process.stderr.readline()  # the recipe is read and the output was probed
+                    self.assertIn(b"parameter nodes", started)
+                    time.sleep(0.1)
+                    self.assertIsNone(process.poll(), "the bake ended before it could be interrupted")
+                finally:
+                    process.send_signal(stop)
+                    process.wait(timeout=support.TIME_LIMIT_S)
+                    process.stderr.close()
+                self.assertNotEqual(process.returncode, 0)
+                self.check_untouched()
+
+
+class UnwritableOutput(support.CliTest):
+    """Refused before any work is done."""
+
+    def test_missing_folder(self):
+        self.refuse("bake", "tiny.toml", "-o", "missing/table.exr", naming=["missing/table.exr", "cannot write"])
+
+    def test_output_is_a_folder(self):
+        (self.folder / "folder.exr").mkdir(exist_ok=True)
+        self.refuse("bake", "tiny.toml", "-o", "folder.exr", naming=["folder.exr", "folder"])
+
+    def test_parent_is_a_file(self):
+        self.refuse("bake", "tiny.toml", "-o", "tiny.toml/table.exr", naming=["tiny.toml/table.exr"])
+
+    def test_extension(self):
+        for name in ("table.png", "table", "table.exr.gz", "tiny.toml"):
+            with self.subTest(name=name):
+                self.refuse("bake", "tiny.toml", "-o", name, naming=[name, ".exr", ".vdb"])
+
+    def test_name_too_long(self):
+        self.refuse("bake", "tiny.toml", "-o", "x" * 300 + ".exr", naming=["cannot write"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,261 @@
+"""`sunbeam render`: pictures, statistics and refusals, with a scene and a table of a few pixels and nodes."""
+
+import json
+import shlex
+import struct
+import unittest
+
+import support
+
+SCENE = """\
+recipe = "../tiny.toml"
+table = "../tables/tiny.exr"
+diffuse_albedo = 0.5
+
+[camera]
+position = [0.0, -4.0, 1.0]
+look_at = [0.0, 0.0, 0.0]
+fov_deg = 40.0
+
+[render]
+width = 24
+height = 16
+spp = 4
+max_bounces = 4
+
+[environment]
+color = [0.5, 0.6, 0.7]
+
+[[light]]
+type = "quad"
+center = [0.0, -2.0, 3.0]
+edge_u = [0.0, 1.0, 0.0]
+edge_v = [1.0, 0.0, 0.0]
+radiance = 6.0
+
+[[material]]
+name = "skin"
+type = "skin"
+film_thickness_nm = 350
+
+[[material]]
+name = "floor"
+type = "diffuse"
+albedo = 0.2
+
+[[object]]
+type = "sphere"
+center = [0.0, 0.0, 0.0]
+radius = 1.0
+material = "skin"
+
+[[object]]
+type = "plane"
+center = [0.0, 0.0, -1.0]
+material = "floor"
+"""
+
+STATS = {"seconds", "cpu_seconds", "samples", "rays", "vertices", "samples_per_second", "peak_rss_mb"}
+
+
+def png_size(content):
+    """Width and height from the header of a PNG."""
+    if content[:8] != b"\x89PNG\r\n\x1a\n" or content[12:16] != b"IHDR":
+        raise AssertionError("not a PNG file")
+    return struct.unpack(">II", content[16:24])
+
+
+def exr_size(content):
+    """Width and height from the data window of a single-part EXR."""
+    if content[:4] != b"\x76\x2f\x31\x01":
+        raise AssertionError("not an EXR file")
+    marker = b"dataWindow\0box2i\0" + struct.pack("<I", 16)
+    start = content.index(marker) + len(marker)
+    x0, y0, x1, y1 = struct.unpack("<4i", content[start:start + 16])
+    return (x1 - x0 + 1, y1 - y0 + 1)
+
+
+class RenderTest(support.CliTest):
+    @classmethod
+    def prepare(cls):
+        for name in ("scenes", "tables"):
+            (cls.folder / name).mkdir()
+        cls.write("scenes/scene.toml", SCENE)
+
+    def read(self, name):
+        return (self.folder / name).read_bytes()
+
+    def render(self, output, *options, scene="scenes/scene.toml"):
+        return self.succeed("render", scene, "-o", output, *options)
+
+
+class Pictures(RenderTest):
+    @classmethod
+    def prepare(cls):
+        super().prepare()
+        support.succeed_in(cls.folder, "bake", "tiny.toml", "-o", "tables/tiny.exr")
+
+    def test_exr_and_png_have_the_size_of_the_scene(self):
+        result = self.render("scene.exr")
+        self.assertEqual(result.out, "")
+        self.assertEqual(exr_size(self.read("scene.exr")), (24, 16))
+        self.assertEqual(png_size(self.read("scene.png")), (24, 16))
+
+    def test_size_and_spp_replace_those_of_the_scene(self):
+        self.render("sized.exr", "--size", "10x30", "--spp", "3", "--stats", "sized.json")
+        self.assertEqual(exr_size(self.read("sized.exr")), (10, 30))
+        self.assertEqual(png_size(self.read("sized.png")), (10, 30))
+        self.assertEqual(json.loads(self.read("sized.json"))["samples"], 10 * 30 * 3)
+
+    def test_statistics(self):
+        self.render("stats.exr", "--stats", "stats.json")
+        stats = json.loads(self.read("stats.json"))
+        self.assertLessEqual(STATS, set(stats))
+        for key in STATS:
+            self.assertGreater(stats[key], 0, key)
+        self.assertEqual(stats["samples"], 24 * 16 * 4)
+        self.assertGreaterEqual(stats["rays"], stats["samples"])
+        self.assertAlmostEqual(stats["samples_per_second"] * stats["seconds"] / stats["samples"], 1, delta=1e-6)
+        self.assertLess(stats["peak_rss_mb"], 4096)
+        self.assertEqual(stats.get("bad_samples", 0), 0)
+
+    def test_pixels_do_not_depend_on_threads(self):
+        for material in ("table", "live", "diffuse"):
+            with self.subTest(material=material):
+                for threads in ("1", "2"):
+                    self.render(f"threads{threads}.exr", "--material", material, "--size", "70x50", "--threads", threads)
+                self.assertEqual(self.read("threads1.exr"), self.read("threads2.exr"))
+                self.assertEqual(self.read("threads1.png"), self.read("threads2.png"))
+
+    def test_seed_and_material_change_the_picture(self):
+        variants = {
+            "table": (), "again": (), "seed": ("--seed", "2"),
+            "live": ("--material", "live"), "diffuse": ("--material", "diffuse"),
+        }
+        for name, options in variants.items():
+            self.render(f"{name}.exr", *options)
+        self.assertEqual(self.read("table.exr"), self.read("again.exr"))
+        pictures = [self.read(f"{name}.png") for name in ("table", "seed", "live", "diffuse")]
+        self.assertEqual(len(set(pictures)), len(pictures), "two variants gave the same picture")
+
+    def test_paths_are_relative_to_the_scene(self):
+        result = support.run_command([support.BINARY, "render", "scene.toml", "-o", "../from_inside.exr"],
+                                     self.folder / "scenes")
+        self.assertEqual(result.code, 0, result)
+        self.render("from_outside.exr")
+        self.assertEqual(self.read("from_inside.png"), self.read("from_outside.png"))
+
+    def test_parameters_outside_the_table_are_refused(self):
+        for key, value in (("film_thickness_nm", "450"), ("base_ior", "1.7"), ("absorption_per_nm", "0.3")):
+            with self.subTest(key=key):
+                self.write("scenes/outside.toml", SCENE.replace("film_thickness_nm = 350", f"{key} = {value}"))
+                self.refuse("render", "scenes/outside.toml", "-o", "i.exr",
+                            naming=["scenes/outside.toml", "'skin'", key, value])
+
+
+class MissingTable(RenderTest):
+    def test_the_printed_command_bakes_it(self):
+        result = self.refuse("render", "scenes/scene.toml", "-o", "i.exr",
+                             naming=["scenes/scene.toml", "tables/tiny.exr", "does not exist", "sunbeam bake "])
+        command = shlex.split(result.err[result.err.index("sunbeam bake "):])
+        self.assertEqual(command, ["sunbeam", "bake", "tiny.toml", "-o", "tables/tiny.exr"])
+        self.succeed(*command[1:])
+        self.render("i.exr")
+
+    def test_live_and_diffuse_need_no_table(self):
+        self.write("scenes/other.toml", SCENE.replace("tables/tiny.exr", "tables/missing.exr"))
+        for material in ("live", "diffuse"):
+            with self.subTest(material=material):
+                self.render(f"{material}.exr", "--material", material, "--spp", "1", scene="scenes/other.toml")
+
+    def test_a_scene_that_names_no_table_or_recipe(self):
+        self.write("scenes/none.toml", "\n".join(SCENE.splitlines()[2:]) + "\n")
+        self.refuse("render", "scenes/none.toml", "-o", "i.exr", naming=["scenes/none.toml", "'table'"])
+        self.refuse("render", "scenes/none.toml", "-o", "i.exr", "--material", "live",
+                    naming=["scenes/none.toml", "'recipe'"])
+        self.render("diffuse.exr", "--material", "diffuse", "--spp", "1", scene="scenes/none.toml")
+
+
+class Refusals(RenderTest):
+    """All with --material diffuse, so that no table is needed."""
+
+    def refuse_scene(self, old, new, *needles, scene=SCENE):
+        self.assertIn(old, scene)
+        self.write("scenes/bad.toml", scene.replace(old, new, 1))
+        line = scene[:scene.index(old)].count("\n") + 1
+        with self.subTest(old=old, new=new):
+            self.refuse("render", "scenes/bad.toml", "-o", "i.exr", "--material", "diffuse",
+                        naming=[f"scenes/bad.toml:{line}: ", *needles])
+
+    def test_bad_values(self):
+        self.refuse_scene("radius = 1.0", "radius = -1.0", "radius", "found -1", "allowed")
+        self.refuse_scene("radius = 1.0", "radius = nan", "radius", "found nan", "allowed")
+        self.refuse_scene("radius = 1.0", "radius = inf", "radius", "found inf", "allowed")
+        self.refuse_scene("radius = 1.0", 'radius = "big"', "radius", "found a string", "number")
+        self.refuse_scene("fov_deg = 40.0", "fov_deg = 180.0", "camera.fov_deg", "found 180", "allowed")
+        self.refuse_scene("spp = 4", "spp = 0", "render.spp", "found 0", "allowed")
+        self.refuse_scene("width = 24", "width = 24.5", "render.width", "found 24.5", "whole number")
+        self.refuse_scene("albedo = 0.2", "albedo = 1.2", "albedo", "found 1.2", "0 to 1")
+        self.refuse_scene("film_thickness_nm = 350", "film_thickness_nm = -1", "film_thickness_nm", "found -1")
+        self.refuse_scene("film_thickness_nm = 350", "base_ior = 0.9", "base_ior", "found 0.9")
+        self.refuse_scene("color = [0.5, 0.6, 0.7]", "color = [0.5, 0.6]", "environment.color", "2 numbers")
+        self.refuse_scene("color = [0.5, 0.6, 0.7]", "color = [0.5, -1, 0.7]", "environment.color", "element 2 is -1")
+        self.refuse_scene("look_at = [0.0, 0.0, 0.0]", "look_at = [0.0, -4.0, 1.0]", "camera.look_at", "position")
+        self.refuse_scene("radiance = 6.0", "radiance = -6.0", "radiance", "found -6")
+        self.refuse_scene('type = "sphere"', 'type = "cube"', "type", 'found "cube"', '"sphere"')
+        self.refuse_scene('type = "skin"', 'type = "skim"', "type", 'found "skim"', '"skin"')
+        self.refuse_scene('material = "skin"', 'material = "skim"', "material", 'found "skim"', '"skin"')
+        self.refuse_scene('name = "floor"', 'name = "skin"', "name", '"skin"', "second time")
+
+    def test_unknown_keys_and_sections(self):
+        self.refuse_scene("fov_deg", "fov_degrees", "camera.fov_degrees", "'fov_deg'")
+        self.refuse_scene("max_bounces", "max_bounce", "render.max_bounce", "'max_bounces'")
+        self.refuse_scene("[environment]", "[enviroment]", "enviroment", "'environment'")
+        self.refuse_scene("[[light]]", "[[ligth]]", "ligth", "'light'")
+
+    def test_broken_toml(self):
+        self.refuse_scene("fov_deg = 40.0", "fov_deg = = 40.0")
+        self.refuse_scene("[camera]", "[camera")
+
+    def test_missing_things(self):
+        self.write("scenes/empty.toml", SCENE[:SCENE.index("[[object]]")])
+        self.refuse("render", "scenes/empty.toml", "-o", "i.exr", "--material", "diffuse",
+                    naming=["scenes/empty.toml", "object"])
+        for name in ("missing.toml", "scenes"):
+            with self.subTest(scene=name):
+                self.refuse("render", name, "-o", "i.exr", naming=[name, "cannot read"])
+
+    def test_missing_files_of_a_scene(self):
+        self.refuse_scene("color = [0.5, 0.6, 0.7]", 'file = "sky.exr"', "environment.file", "scenes/sky.exr")
+        self.refuse_scene('center = [0.0, 0.0, -1.0]\n', 'file = "snake.obj"\n', "object[1].file", "scenes/snake.obj",
+                          scene=SCENE.replace('type = "plane"', 'type = "mesh"'))
+
+    def test_missing_recipe(self):
+        self.write("scenes/bad.toml", SCENE.replace("../tiny.toml", "../missing.toml"))
+        self.refuse("render", "scenes/bad.toml", "-o", "i.exr", "--material", "live", naming=["missing.toml"])
+
+    def test_bad_sizes(self):
+        for size in ("0x10", "10x0", "10", "x", "10x", "x10", "10x10x", "10*10", "-1x10", "1.5x2", "99999x1", " 8x8", ""):
+            with self.subTest(size=size):
+                self.refuse("render", "scenes/scene.toml", "-o", "i.exr", "--material", "diffuse", "--size", size,
+                            naming=["--size", f"'{size}'", "WIDTHxHEIGHT"])
+
+    def test_unwritable_outputs(self):
+        for name in ("folder.exr", "folder.json", "blocked.png"):
+            (self.folder / name).mkdir()
+        cases = [
+            (("-o", "missing/i.exr"), "missing/i.exr"),
+            (("-o", "folder.exr"), "folder.exr"),
+            (("-o", "blocked.exr"), "blocked.png"),
+            (("-o", "i.png"), "i.png"),
+            (("-o", "i"), ".exr"),
+            (("-o", "i.exr", "--stats", "missing/s.json"), "missing/s.json"),
+            (("-o", "i.exr", "--stats", "folder.json"), "folder.json"),
+        ]
+        for options, needle in cases:
+            with self.subTest(options=options):
+                self.refuse("render", "scenes/scene.toml", "--material", "diffuse", *options, naming=[needle])
+
+
+if __name__ == "__main__":
+    unittest.main()

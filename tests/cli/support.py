@@ -1,0 +1,139 @@
+"""What the command-line tests share: running `sunbeam`, a recipe that bakes in about a second, and checks of
+the contract for bad input.
+
+The environment names the program (SUNBEAM_BINARY) and the sources (SUNBEAM_SOURCE_DIR).
+"""
+
+import csv
+import io
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+BINARY = os.environ["SUNBEAM_BINARY"]
+SOURCE_DIR = pathlib.Path(os.environ["SUNBEAM_SOURCE_DIR"])
+TIME_LIMIT_S = 240
+
+# A film that light passes straight and a dark base: the cheapest table with two swept parameters.
+TINY_RECIPE = """\
+[material]
+transmission = "straight"
+absorption_path = "product"
+roughness = 0.0
+albedo = 0.1
+film_thickness_nm = 300.0
+base_ior = 1.5
+absorption_per_nm = 0.1
+
+[grid]
+film_thickness_nm = [200.0, 400.0]
+absorption_per_nm = [0.0, 0.2]
+
+[table]
+angles = 3
+
+[accuracy]
+noise = 0.05
+tolerance_median = 0.3
+tolerance_p99 = 1.0
+"""
+
+# With a black base nothing but the film remains: no walks to speak of.
+BLACK_BASE = ("--set", "material.albedo=0")
+
+
+class Result:
+    def __init__(self, command, process):
+        self.command = " ".join(str(part) for part in command)
+        self.code = process.returncode
+        self.out = process.stdout.decode("utf-8", "replace")
+        self.err = process.stderr.decode("utf-8", "replace")
+
+    def __str__(self):
+        return f"\n$ {self.command}\nexit code {self.code}\nstdout: {self.out[-2000:]}\nstderr: {self.err[-2000:]}"
+
+
+def run_command(command, cwd, stdin="", env=None, timeout=TIME_LIMIT_S, **options):
+    process = subprocess.run(
+        [str(part) for part in command], cwd=cwd, input=stdin.encode(), capture_output=True,
+        timeout=timeout, env=dict(os.environ, LC_ALL="C", **(env or {})), **options)
+    return Result(command, process)
+
+
+def make_folder(owner):
+    """A temporary folder that goes when the test case or class `owner` is done."""
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="sunbeam-test-"))
+    clean_up = owner.addClassCleanup if isinstance(owner, type) else owner.addCleanup
+    clean_up(shutil.rmtree, folder)
+    return folder
+
+
+def sunbeam_in(folder, *arguments, **options):
+    return run_command([BINARY, *arguments], folder, **options)
+
+
+def succeed_in(folder, *arguments, **options):
+    """Runs and expects exit code 0; for set-up code outside a test case."""
+    result = sunbeam_in(folder, *arguments, **options)
+    if result.code != 0:
+        raise AssertionError(f"expected success: {result}")
+    return result
+
+
+def rows_of(text):
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+class CliTest(unittest.TestCase):
+    """One folder per class, `self.folder`, in which the program runs. `prepare` fills it once."""
+
+    longMessage = True
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = make_folder(cls)
+        (cls.folder / "tiny.toml").write_text(TINY_RECIPE)
+        cls.prepare()
+
+    @classmethod
+    def prepare(cls):
+        pass
+
+    @classmethod
+    def write(cls, name, text):
+        path = cls.folder / name
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return name
+
+    def sunbeam(self, *arguments, **options):
+        return sunbeam_in(self.folder, *arguments, **options)
+
+    def succeed(self, *arguments, **options):
+        result = self.sunbeam(*arguments, **options)
+        self.assertEqual(result.code, 0, result)
+        return result
+
+    def names(self):
+        return sorted(entry.name for entry in self.folder.iterdir())
+
+    def check_refusal(self, result, *needles):
+        """Exit code 2, nothing on stdout, one line of error that holds every needle."""
+        self.assertEqual(result.code, 2, result)
+        self.assertEqual(result.out, "", result)
+        self.assertEqual(result.err.count("\n"), 1, f"stderr is not one line: {result}")
+        self.assertTrue(result.err.startswith("sunbeam: error: "), result)
+        self.assertTrue(result.err.endswith("\n"), result)
+        for needle in needles:
+            self.assertIn(needle, result.err, result)
+
+    def refuse(self, *arguments, naming=(), **options):
+        """Runs, expects a refusal that names `naming`, and that no file came, went or changed."""
+        before = {entry.name: entry.stat().st_mtime_ns for entry in self.folder.iterdir()}
+        result = self.sunbeam(*arguments, **options)
+        self.check_refusal(result, *naming)
+        after = {entry.name: entry.stat().st_mtime_ns for entry in self.folder.iterdir()}
+        self.assertEqual(after, before, f"the refused command changed the folder: {result}")
+        return result

@@ -1,0 +1,264 @@
+"""`sunbeam info`, other programs that read the files, and damaged files. One bake serves all."""
+
+import json
+import pathlib
+import random
+import re
+import shutil
+import tempfile
+import unittest
+
+import support
+
+OPTIONS = ("--seed", "7", "--set", "grid.base_ior=[1.4, 1.6]", "--set", "material.albedo=0.02")
+NAMES = ("table.exr", "table.vdb")
+KEYS = ["schema_version", "encoding", "bytes", "axes", "recipe", "recipe_hash", "seed", "samples", "estimator",
+        "spectrum", "tool_version", "error"]
+
+
+def setUpModule():
+    global FOLDER
+    FOLDER = pathlib.Path(tempfile.mkdtemp(prefix="sunbeam-test-"))
+    unittest.addModuleCleanup(shutil.rmtree, FOLDER)
+    (FOLDER / "tiny.toml").write_text(support.TINY_RECIPE)
+    for name in NAMES:
+        support.succeed_in(FOLDER, "bake", "tiny.toml", "-o", name, *OPTIONS)
+
+
+class TableFileTest(support.CliTest):
+    @classmethod
+    def prepare(cls):
+        for name in NAMES:
+            shutil.copy(FOLDER / name, cls.folder / name)
+
+    def info(self, name):
+        return json.loads(self.succeed("info", name, "--json").out)
+
+
+class Info(TableFileTest):
+    def test_json_keys(self):
+        for name in NAMES:
+            with self.subTest(table=name):
+                self.assertEqual(list(self.info(name)), KEYS)
+
+    def test_values(self):
+        for name in NAMES:
+            with self.subTest(table=name):
+                info = self.info(name)
+                self.assertEqual(info["schema_version"], 1)
+                self.assertEqual(info["encoding"], "dense")
+                self.assertEqual(info["bytes"], (self.folder / name).stat().st_size)
+                self.assertEqual(info["seed"], 7)
+                self.assertGreater(info["samples"], 0)
+                self.assertEqual(info["spectrum"], "rgb3")
+                self.assertRegex(info["estimator"], r"^pfmc-\w+$")
+                self.assertRegex(info["recipe_hash"], r"^[0-9a-f]{32}$")
+                self.assertEqual(f"sunbeam {info['tool_version']}\n", self.succeed("--version").out)
+
+    def test_axes(self):
+        expected = {
+            "film_thickness_nm": ("nm", [200, 400]),
+            "base_ior": ("1", [1.4, 1.6]),
+            "absorption_per_nm": ("1/nm", [0, 0.2]),
+            "cos_theta_i": ("1", 3),
+            "phi_i": ("rad", 1),
+            "cos_theta_o": ("1", 3),
+            "phi_o": ("rad", 1),
+        }
+        axes = self.info("table.exr")["axes"]
+        self.assertEqual([axis["name"] for axis in axes], list(expected))
+        for axis in axes:
+            self.assertEqual(list(axis), ["name", "unit", "nodes"])
+            unit, nodes = expected[axis["name"]]
+            self.assertEqual(axis["unit"], unit)
+            if isinstance(nodes, list):
+                self.assertEqual(axis["nodes"], nodes)
+            else:
+                self.assertEqual(len(axis["nodes"]), nodes)
+                self.assertEqual(axis["nodes"], sorted(axis["nodes"]))
+
+    def test_both_forms_agree_in_all_but_bytes(self):
+        exr, vdb = (self.info(name) for name in NAMES)
+        self.assertNotEqual(exr.pop("bytes"), vdb.pop("bytes"))
+        self.assertEqual(exr, vdb)
+
+    def test_both_forms_evaluate_to_the_same_digits(self):
+        points = "theta_i_deg,theta_o_deg,phi_deg,film_thickness_nm\n0,0,0,200\n30,40,180,311\n85,89,20,400\n"
+        for quantity in ("brdf", "albedo", "film"):
+            exr, vdb = (self.succeed("eval", name, "--points", "-", "--quantity", quantity, stdin=points).out
+                        for name in NAMES)
+            self.assertEqual(exr, vdb)
+
+    def test_the_recipe_inside_gives_the_table_again(self):
+        info = self.info("table.exr")
+        self.write("inside.toml", info["recipe"])
+        self.succeed("bake", "inside.toml", "-o", "again.exr", "--seed", str(info["seed"]))
+        self.assertEqual((self.folder / "again.exr").read_bytes(), (self.folder / "table.exr").read_bytes())
+
+    def test_the_error_inside_is_that_of_verify(self):
+        self.succeed("verify", "table.exr", "--points", "250", "--json", "report.json")
+        report = json.loads((self.folder / "report.json").read_text())
+        inside = self.info("table.exr")["error"]
+        self.assertEqual({f"error_{k}" if k in ("median", "p95", "p99", "max") else k: v for k, v in inside.items()},
+                         report)
+
+    def test_text_shows_the_same_facts(self):
+        text = self.succeed("info", "table.exr").out
+        info = self.info("table.exr")
+        for fact in (info["recipe_hash"], info["estimator"], info["recipe"], str(info["bytes"])):
+            self.assertIn(fact, text)
+        for axis in info["axes"]:
+            self.assertRegex(text, rf"(?m)^axis +{axis['name']} +{len(axis['nodes'])} nodes")
+
+    def test_an_extension_in_capitals_is_the_same_form(self):
+        shutil.copy(self.folder / "table.exr", self.folder / "CAPITAL.EXR")
+        self.assertEqual(self.info("CAPITAL.EXR"), self.info("table.exr"))
+
+
+class OtherPrograms(TableFileTest):
+    """What other programs see of the files. A missing program fails the test."""
+
+    ARRAYS = {"film_reflectance", "remainder", "rest_stderr"}  # a smooth film has no film_transmittance
+
+    def run_tool(self, package, *command):
+        if shutil.which(command[0]) is None:
+            self.fail(f"{command[0]} is not installed: apt install {package}")
+        result = support.run_command(command, self.folder)
+        self.assertEqual(result.code, 0, result)
+        return result.out
+
+    def test_exrheader(self):
+        text = self.run_tool("openexr", "exrheader", "table.exr")
+        self.assertEqual(set(re.findall(r'(?m)^name \(type string\): "(\w+)"', text)), self.ARRAYS)
+        info = self.info("table.exr")
+        self.assertIn(f'sunbeam.recipe_hash (type string): "{info["recipe_hash"]}"', text)
+        self.assertIn('sunbeam.schema_version (type string): "1"', text)
+        self.assertIn('sunbeam.axis.0.name (type string): "film_thickness_nm"', text)
+
+    def test_exrinfo(self):
+        text = self.run_tool("openexr", "exrinfo", "-v", "table.exr")
+        for name in self.ARRAYS:
+            self.assertRegex(text, rf"part \d+: {name}\b")
+        self.assertRegex(text, r"'G': half")
+        self.assertRegex(text, r"'G': float")
+
+    def test_exrmultipart_splits_the_file(self):
+        """Reads every pixel and writes it anew."""
+        self.run_tool("openexr", "exrmultipart", "-separate", "-i", "table.exr", "-o", "part")
+        parts = sorted(self.folder.glob("part*.exr"))
+        self.assertEqual(len(parts), len(self.ARRAYS))
+        for part in parts:
+            self.run_tool("openexr", "exrheader", part.name)
+
+    def test_vdb_print(self):
+        text = self.run_tool("libopenvdb-tools", "vdb_print", "-l", "table.vdb")
+        for name in self.ARRAYS:
+            self.assertRegex(text, rf"(?m)^\W*Name: {name}$")
+        info = self.info("table.vdb")
+        self.assertIn(f'sunbeam.recipe_hash: {info["recipe_hash"]}', text)
+        self.assertIn("vec3s", self.run_tool("libopenvdb-tools", "vdb_print", "table.vdb"))
+
+
+class Damage(TableFileTest):
+    """Cut, flipped and foreign files: refused, never read as something else, never a crash."""
+
+    POSITIONS = 40
+
+    def refuse_file(self, name):
+        self.check_refusal(self.sunbeam("info", name, "--json"), name)
+
+    def test_cut_files(self):
+        for name in NAMES:
+            content = (self.folder / name).read_bytes()
+            # Every scale of length, and the last bytes of all.
+            lengths = {0, 1, 4, 7, 8, 20, 57, 64, len(content) - 1, len(content) - 9}
+            lengths |= {len(content) * k // (self.POSITIONS - len(lengths)) for k in range(self.POSITIONS - len(lengths))}
+            self.assertGreaterEqual(len(lengths), self.POSITIONS - 2)
+            for length in sorted(lengths):
+                with self.subTest(table=name, length=length):
+                    self.refuse_file(self.write(f"cut.{name[-3:]}", content[:length]))
+
+    def test_flipped_bits(self):
+        """A flip that changes nothing of the table, such as a display hint, may pass."""
+        chance = random.Random(20240501)
+        for name in NAMES:
+            content = (self.folder / name).read_bytes()
+            original = self.succeed("info", name, "--json").out
+            # Half of them in the first 2000 bytes, where the headers are.
+            positions = [chance.randrange(2000) for _ in range(self.POSITIONS // 2)]
+            positions += [chance.randrange(len(content)) for _ in range(self.POSITIONS // 2)]
+            refused = 0
+            for position in positions:
+                flipped = bytearray(content)
+                flipped[position] ^= 1 << chance.randrange(8)
+                damaged = self.write(f"flipped.{name[-3:]}", bytes(flipped))
+                with self.subTest(table=name, position=position):
+                    result = self.sunbeam("info", damaged, "--json")
+                    if result.code == 0:
+                        self.assertEqual(result.out, original)
+                    else:
+                        self.check_refusal(result, damaged)
+                        refused += 1
+            self.assertGreater(refused, self.POSITIONS * 3 // 4)
+
+    def test_appended_zeros_and_overwritten_stretches(self):
+        for name in NAMES:
+            content = (self.folder / name).read_bytes()
+            original = self.succeed("info", name, "--json").out
+            for start in range(0, len(content), max(1, len(content) // 10)):
+                for fill in (b"\x00", b"\xff"):
+                    damaged = content[:start] + fill * 512 + content[start + 512:]
+                    with self.subTest(table=name, start=start, fill=fill):
+                        result = self.sunbeam("info", self.write(f"filled.{name[-3:]}", damaged[:len(content)]), "--json")
+                        if result.code == 0:
+                            self.assertEqual(result.out, original)
+                        else:
+                            self.check_refusal(result, "filled")
+
+    def test_foreign_files(self):
+        self.write("text.exr", support.TINY_RECIPE)
+        self.write("text.vdb", support.TINY_RECIPE)
+        self.write("empty.exr", "")
+        self.write("empty.vdb", "")
+        shutil.copy(self.folder / "table.exr", self.folder / "exr.vdb")
+        shutil.copy(self.folder / "table.vdb", self.folder / "vdb.exr")
+        for name in ("text.exr", "text.vdb", "empty.exr", "empty.vdb", "exr.vdb", "vdb.exr"):
+            with self.subTest(name=name):
+                self.refuse_file(name)
+
+    def test_a_picture_is_not_a_table(self):
+        self.write("scene.toml", 'diffuse_albedo = 0.5\n[camera]\nposition = [0, -4, 1]\nlook_at = [0, 0, 0]\n'
+                   '[environment]\ncolor = 0.5\n[[material]]\nname = "grey"\ntype = "diffuse"\n'
+                   '[[object]]\ntype = "sphere"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = "grey"\n')
+        self.succeed("render", "scene.toml", "-o", "picture.exr", "--size", "8x8", "--spp", "1")
+        for arguments in (("info",), ("verify",), ("eval", "--points", "-")):
+            with self.subTest(command=arguments[0]):
+                self.refuse(*arguments, "picture.exr", stdin="theta_i_deg,theta_o_deg,phi_deg\n1,2,3\n",
+                            naming=["picture.exr", "not a Sunbeam table"])
+
+    def test_every_command_refuses_a_damaged_table(self):
+        content = bytearray((self.folder / "table.exr").read_bytes())
+        content[len(content) // 2] ^= 0x10
+        self.write("damaged.exr", bytes(content))
+        self.write("scene.toml", 'table = "damaged.exr"\n[camera]\nposition = [0, -4, 1]\nlook_at = [0, 0, 0]\n'
+                   '[[material]]\nname = "skin"\ntype = "skin"\n'
+                   '[[object]]\ntype = "sphere"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = "skin"\n')
+        for arguments in (("info", "damaged.exr"), ("verify", "damaged.exr"),
+                          ("eval", "damaged.exr", "--points", "-"), ("render", "scene.toml", "-o", "i.exr")):
+            with self.subTest(command=arguments[0]):
+                self.refuse(*arguments, stdin="theta_i_deg,theta_o_deg,phi_deg\n1,2,3\n", naming=["damaged.exr"])
+
+    def test_missing_file_folder_and_extension(self):
+        for suffix in ("exr", "vdb"):
+            (self.folder / f"folder.{suffix}").mkdir()
+            for name, needle in ((f"missing.{suffix}", "No such file"), (f"folder.{suffix}", "folder")):
+                for command in ("info", "verify"):
+                    with self.subTest(name=name, command=command):
+                        self.refuse(command, name, naming=[name, needle])
+        for command in ("info", "verify"):
+            with self.subTest(command=command):
+                self.refuse(command, "tiny.toml", naming=["tiny.toml", ".exr", ".vdb"])
+
+
+if __name__ == "__main__":
+    unittest.main()

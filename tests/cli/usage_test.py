@@ -1,0 +1,101 @@
+"""Help, version and mistakes on the command line itself."""
+
+import os
+import pathlib
+import re
+import unittest
+
+import support
+
+COMMANDS = ("bake", "info", "eval", "verify", "render")
+
+
+class Help(support.CliTest):
+    def test_top_level_help_lists_every_command_and_shows_an_example(self):
+        result = self.succeed("--help")
+        self.assertEqual(result.err, "")
+        for command in COMMANDS:
+            self.assertRegex(result.out, rf"(?m)^  {command}\b")
+        self.assertRegex(result.out, r"(?s)Example:\n.*sunbeam bake ")
+
+    def test_help_of_every_command_shows_an_example_of_that_command(self):
+        for command in COMMANDS:
+            with self.subTest(command=command):
+                result = self.succeed(command, "--help")
+                self.assertEqual(result.err, "")
+                self.assertRegex(result.out, rf"(?s)Example:\n.*sunbeam {command} ")
+
+    def test_help_names_every_option(self):
+        options = {
+            "bake": ("--output", "--set", "--threads", "--seed"),
+            "info": ("--json",),
+            "eval": ("--points", "--quantity", "--set", "--samples", "--seed"),
+            "verify": ("--points", "--json", "--threads", "--seed"),
+            "render": ("--output", "--material", "--size", "--spp", "--threads", "--seed", "--stats"),
+        }
+        for command, names in options.items():
+            text = self.succeed(command, "--help").out
+            for name in names:
+                with self.subTest(command=command, option=name):
+                    self.assertIn(name, text)
+
+    def test_the_example_of_eval_works_as_printed(self):
+        text = self.succeed("eval", "--help").out
+        example = text.split("Example:\n", 1)[1]
+        path = f"{pathlib.Path(support.BINARY).parent}{os.pathsep}{os.environ['PATH']}"
+        result = support.run_command(["/bin/bash", "-c", example], support.SOURCE_DIR, env={"PATH": path})
+        self.assertEqual(result.code, 0, result)
+        self.assertEqual(len(support.rows_of(result.out)), 1, result)
+
+
+class Version(support.CliTest):
+    def test_version_is_the_one_of_the_project(self):
+        cmake = (support.SOURCE_DIR / "CMakeLists.txt").read_text()
+        version = re.search(r"project\(sunbeam VERSION ([\d.]+)", cmake).group(1)
+        result = self.succeed("--version")
+        self.assertEqual((result.out, result.err), (f"sunbeam {version}\n", ""))
+
+
+class Mistakes(support.CliTest):
+    def test_no_arguments_shows_how_to_go_on(self):
+        result = self.sunbeam()
+        self.assertEqual(result.code, 2, result)
+        self.assertEqual(result.out, "", result)
+        self.assertRegex(result.err, "subcommand|Usage")
+        self.assertIn("--help", result.err)
+
+    def test_mistakes_are_named(self):
+        bake = ("bake", "tiny.toml", "-o", "out.exr")
+        points = self.write("points.csv", "theta_i_deg,theta_o_deg,phi_deg\n1,2,3\n")
+        evaluate = ("eval", "tiny.toml", "--points", points)
+        cases = [
+            (("polish",), ["polish"]),
+            (("--polish",), ["--polish"]),
+            (("bake", "--polish"), ["--polish"]),
+            ((*bake, "--polish"), ["--polish"]),
+            ((*bake, "extra.toml"), ["extra.toml"]),
+            (("bake", "tiny.toml"), ["--output"]),
+            (("bake",), ["recipe"]),
+            (("info",), ["table"]),
+            (("eval", "tiny.toml"), ["--points"]),
+            (("verify",), ["table"]),
+            (("render", "scene.toml"), ["--output"]),
+            ((*bake, "--threads", "-1"), ["--threads", "-1"]),
+            ((*bake, "--threads", "two"), ["--threads", "two"]),
+            ((*bake, "--seed", "one"), ["--seed", "one"]),
+            ((*bake, "--seed", "-1"), ["--seed", "-1"]),
+            ((*bake, "--seed"), ["--seed"]),
+            ((*evaluate, "--quantity", "colour"), ["--quantity", "colour", "brdf", "albedo", "film"]),
+            ((*evaluate, "--samples", "1"), ["--samples", "1", "2"]),
+            ((*evaluate, "--samples", "many"), ["--samples", "many"]),
+            (("verify", "table.exr", "--points", "0"), ["--points", "0", "1"]),
+            (("render", "scene.toml", "-o", "i.exr", "--material", "wood"), ["wood", "table", "live", "diffuse"]),
+            (("render", "scene.toml", "-o", "i.exr", "--spp", "0"), ["--spp", "0", "1"]),
+        ]
+        for arguments, needles in cases:
+            with self.subTest(arguments=arguments):
+                self.refuse(*arguments, naming=needles)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,171 @@
+// The frame that remainders are stored in, against its formula in table.h.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "sunbeam/core/rng.h"
+#include "sunbeam/table.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr double kLargestHalf = 65504;
+
+struct Case {
+  Material material;
+  double cos_i, cos_o;
+  Rgb t_i, t_o;
+};
+
+Rgb random_colour(Rng& rng, double low, double high) {
+  const double r = lerp(rng.uniform(), low, high), g = lerp(rng.uniform(), low, high);
+  return {r, g, lerp(rng.uniform(), low, high)};
+}
+
+// Cosines down to the table's lowest, optical depths up to 3, both modes of both choices.
+Case random_case(Rng& rng) {
+  Case c;
+  c.material.transmission = rng.uniform() < 0.5 ? Transmission::straight : Transmission::refract;
+  c.material.absorption_path = rng.uniform() < 0.5 ? AbsorptionPath::product : AbsorptionPath::sum;
+  c.material.exterior_ior = 1 + 0.3 * rng.uniform();
+  c.material.base_ior = c.material.exterior_ior * (1 + rng.uniform());
+  c.material.pigment_thickness_nm = 2;
+  c.material.absorption_per_nm = rng.uniform() < 0.2 ? 0 : 1.5 * rng.uniform();
+  c.material.albedo = random_colour(rng, 0, 1);
+  const auto cosine = [&] { return rng.uniform() < 0.3 ? 0.01 : lerp(rng.uniform(), 0.01, 1); };
+  c.cos_i = cosine();
+  c.cos_o = cosine();
+  c.t_i = random_colour(rng, 0.01, 1);
+  c.t_o = random_colour(rng, 0.01, 1);
+  return c;
+}
+
+// table.h once more, written down independently.
+struct Formula {
+  Rgb front, first_visit;
+  double decay;
+  explicit Formula(const Case& c) {
+    const Material& m = c.material;
+    const double ratio = m.exterior_ior / m.base_ior, tau = m.absorption_per_nm * m.pigment_thickness_nm;
+    const bool straight = m.transmission == Transmission::straight;
+    const auto below = [&](double x) { return straight ? x : std::sqrt(1 - ratio * ratio * (1 - x * x)); };
+    const double i = below(c.cos_i), o = below(c.cos_o), sum = 1 / i + 1 / o;
+    const double path = m.absorption_path == AbsorptionPath::sum ? sum : 1 / (i * o);
+    front = (straight ? 1 : ratio * ratio) * c.t_i * c.t_o;
+    first_visit = m.albedo * (std::exp(-tau * path) / kPi);
+    decay = std::exp(-std::min(tau * sum, 12.0));
+  }
+};
+
+TEST(RestFrame, DecodeIsTheFormula) {
+  Rng rng(1, 0);
+  for (int k = 0; k < 10000; ++k) {
+    const Case c = random_case(rng);
+    const Formula formula(c);
+    const Rgb remainder = random_colour(rng, 0, 2);
+    const Rgb found = RestFrame(c.material).decode(remainder, c.cos_i, c.cos_o, c.t_i, c.t_o);
+    const Rgb expected = formula.front * (formula.first_visit + formula.decay * remainder);
+    // The exponents reach 6e4, where an exp of them is 0 anyway; below 700 its relative error is 1e-13.
+    for (int j = 0; j < 3; ++j) EXPECT_NEAR(found[j], expected[j], 1e-12 * expected[j] + 1e-300);
+  }
+}
+
+// Noise can leave a remainder so negative that the rest would be; light is not.
+TEST(RestFrame, DecodeIsNeverNegative) {
+  Rng rng(2, 0);
+  for (int k = 0; k < 10000; ++k) {
+    const Case c = random_case(rng);
+    const Rgb rest =
+        RestFrame(c.material).decode(random_colour(rng, -1, -0.5), c.cos_i, c.cos_o, c.t_i, c.t_o);
+    EXPECT_GE(std::min({rest.r, rest.g, rest.b}), 0);
+  }
+}
+
+// What the model can hold: the first visit or more by the later ones. With rho <= 0.9 of the light thrown
+// back below the film they add at most kd/pi decay kd rho / (1 - kd rho) < 9 / pi decay.
+TEST(RestFrame, EncodeAndDecodeAreInverse) {
+  Rng rng(3, 0);
+  for (int k = 0; k < 20000; ++k) {
+    const Case c = random_case(rng);
+    const Formula formula(c);
+    const Rgb rest =
+        formula.front * (formula.first_visit + formula.decay * random_colour(rng, 0, 9 * kInvPi));
+    const RestFrame frame(c.material);
+    const Rgb remainder = frame.encode(rest, c.cos_i, c.cos_o, c.t_i, c.t_o);
+    ASSERT_TRUE(is_finite(remainder)) << k;
+    // Subtracting the first visit costs digits of it: 1e-15 of first / decay, which is at most e^12 / pi.
+    EXPECT_LT(max_component(remainder), 9 * kInvPi + 1e-9) << k;
+    EXPECT_LT(max_component(remainder), kLargestHalf);
+    const Rgb back = frame.decode(remainder, c.cos_i, c.cos_o, c.t_i, c.t_o);
+    for (int j = 0; j < 3; ++j)
+      EXPECT_NEAR(back[j], rest[j], 1e-13 * (rest[j] + formula.front[j] * formula.first_visit[j])) << k;
+  }
+}
+
+// The product path from 0.01 to 0.01 at tau = 3 is an exponent of 30000, the sum one of 600; the decay stays
+// at its cap of exp(-12) and a rest of nothing but noise, 1e-6, is still a half.
+TEST(RestFrame, DarkestCornerIsFinite) {
+  for (const auto path : {AbsorptionPath::product, AbsorptionPath::sum})
+    for (const auto transmission : {Transmission::straight, Transmission::refract}) {
+      Material m;
+      m.absorption_path = path;
+      m.transmission = transmission;
+      m.absorption_per_nm = 1.5;
+      const RestFrame frame(m);
+      for (const double rest : {0.0, 1e-300, 1e-6}) {
+        const Rgb remainder = frame.encode(Rgb(rest), 0.01, 0.01, Rgb(1), Rgb(1));
+        EXPECT_TRUE(is_finite(remainder));
+        EXPECT_LT(max_component(remainder), kLargestHalf);
+        const Rgb back = frame.decode(remainder, 0.01, 0.01, Rgb(1), Rgb(1));
+        EXPECT_NEAR(back.r, rest, 1e-15 + 1e-13 * rest);
+      }
+    }
+}
+
+// Where the film lets nothing through there is no rest, and nothing to divide by.
+TEST(RestFrame, OpaqueFilm) {
+  const RestFrame frame{Material()};
+  EXPECT_EQ(frame.encode(Rgb(0), 0.5, 0.5, Rgb(0), Rgb(1)), Rgb(0));
+  EXPECT_EQ(frame.decode(Rgb(1), 0.5, 0.5, Rgb(0), Rgb(1)), Rgb(0));
+}
+
+// For the sum path and a smooth film the rest is s T T kd/pi exp(-tau (1/m_i + 1/m_o)) / (1 - kd rho): the
+// remainder is then kd/pi kd rho / (1 - kd rho) wherever the decay is below its cap. tau (1/m_i + 1/m_o) <=
+// 0.2 * 20 = 4 here.
+TEST(RestFrame, RankOneRestHasAConstantRemainder) {
+  Material m;
+  m.transmission = Transmission::straight;
+  m.absorption_per_nm = 0.1;
+  m.pigment_thickness_nm = 2;
+  m.albedo = Rgb(0.5);
+  const double rho = 0.4, expected = 0.5 * kInvPi * 0.2 / 0.8;
+  for (const double i : {0.1, 0.4, 1.0})
+    for (const double o : {0.1, 0.7, 1.0}) {
+      const double rest = 0.8 * 0.6 * 0.5 * kInvPi * std::exp(-0.2 * (1 / i + 1 / o)) / (1 - 0.5 * rho);
+      EXPECT_NEAR(RestFrame(m).encode(Rgb(rest), i, o, Rgb(0.8), Rgb(0.6)).g, expected, 1e-14)
+          << i << ' ' << o;
+    }
+}
+
+// A film above a rarer base, n0 > n2: beyond the critical angle no direction below exists (cosine 0), yet the
+// facets of a rough film let light through. Rest and remainder stay finite.
+TEST(RestFrame, BeyondTheCriticalAngleIsFinite) {
+  for (const double absorption : {0.0, 0.01, 0.5, 1.5})
+    for (const auto path : {AbsorptionPath::product, AbsorptionPath::sum}) {
+      Material m;
+      m.exterior_ior = 1.5;
+      m.base_ior = 1.2;  // critical cosine 0.6
+      m.absorption_per_nm = absorption;
+      m.absorption_path = path;
+      const RestFrame frame(m);
+      for (const double i : {0.01, 0.3, 0.9}) {
+        const Rgb remainder = frame.encode(Rgb(1e-3), i, 0.3, Rgb(0.3), Rgb(0.3));
+        EXPECT_TRUE(is_finite(remainder)) << absorption << ' ' << i;
+        const Rgb rest = frame.decode(remainder, i, 0.3, Rgb(0.3), Rgb(0.3));
+        EXPECT_NEAR(rest.r, 1e-3, 1e-12) << absorption << ' ' << i;
+      }
+    }
+}
+
+}  // namespace
+}  // namespace sunbeam

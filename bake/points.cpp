@@ -10,6 +10,7 @@
 
 #include "bake/cell.h"
 #include "bake/csv.h"
+#include "bake/live/exact.h"
 #include "bake/live/pfmc.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/table_bsdf.h"
@@ -105,39 +106,79 @@ class PointReader {
   std::vector<std::size_t> material_columns_;
 };
 
-Results live_brdf(const Pfmc& model, const Point& point, std::int64_t samples, Rng& rng) {
-  Cell rest;
-  double pdf = 0;
-  for (std::int64_t k = 0; k < samples; ++k) {
-    rest.add(model.estimate_rest(point.wo, point.wi, rng));
-    pdf += model.estimate_pdf(point.wo, point.wi, rng);
-  }
+// A value and its standard error, per channel.
+struct Estimate {
+  Rgb value, standard_error;
+};
+
+template <class Walk>
+Estimate mean_of_walks(std::int64_t samples, Walk walk) {
+  Cell cell;
+  for (std::int64_t k = 0; k < samples; ++k) cell.add(walk());
   const auto walks = static_cast<double>(samples);
-  return {{"first", model.first(point.wo, point.wi)},
-          {"rest", rest.mean_of(walks)},
-          {"stderr", rest.standard_error(walks)},
-          {"pdf", Rgb(pdf / walks), true},
-          {"dirac", model.dirac(point.wi)}};
+  return {cell.mean_of(walks), cell.standard_error(walks)};
 }
 
-// The Dirac part exactly, everything else from walks.
-Results live_albedo(const Pfmc& model, const Point& point, std::int64_t samples, Rng& rng) {
-  Cell glossy;
-  for (std::int64_t k = 0; k < samples; ++k) {
-    const auto sample = model.sample(point.wi, rng);
-    glossy.add(sample && !sample->is_dirac ? sample->throughput : Rgb());
+// The rows of a live recipe at one material, by PFMC or exactly.
+class LivePoint {
+ public:
+  LivePoint(const Material& material, const Point& point, const PointsSettings& settings)
+      : point_(point),
+        samples_(settings.samples),
+        model_(material, wavelengths()),
+        rng_(settings.seed, point.stream) {
+    if (settings.estimator == Estimator::exact && settings.quantity != Quantity::film)
+      exact_.emplace(material, wavelengths());
   }
-  const auto walks = static_cast<double>(samples);
-  return {{"total", model.dirac(point.wi) + glossy.mean_of(walks)}, {"stderr", glossy.standard_error(walks)}};
-}
+
+  Results brdf() {
+    const Estimate rest = exact_ ? Estimate{exact_->rest(point_.wo, point_.wi), Rgb()} : walked_rest();
+    return {{"first", model_.first(point_.wo, point_.wi)},
+            {"rest", rest.value},
+            {"stderr", rest.standard_error},
+            {"pdf", walked_pdf(), true},
+            {"dirac", model_.dirac(point_.wi)}};
+  }
+
+  Results albedo() {
+    const Estimate total = exact_ ? Estimate{exact_->albedo(point_.wi), Rgb()} : walked_albedo();
+    return {{"total", total.value}, {"stderr", total.standard_error}};
+  }
+
+  Results film() const { return {{"reflectance", model_.film().power(point_.wi.z).reflectance}}; }
+
+ private:
+  Rgb wavelengths() const { return point_.wavelength_nm ? Rgb(*point_.wavelength_nm) : kRgb3WavelengthsNm; }
+
+  Estimate walked_rest() {
+    return mean_of_walks(samples_, [&] { return model_.estimate_rest(point_.wo, point_.wi, rng_); });
+  }
+  Rgb walked_pdf() {
+    return mean_of_walks(samples_, [&] { return Rgb(model_.estimate_pdf(point_.wo, point_.wi, rng_)); })
+        .value;
+  }
+
+  // The Dirac part exactly, everything else from walks.
+  Estimate walked_albedo() {
+    Estimate total = mean_of_walks(samples_, [&] {
+      const auto sample = model_.sample(point_.wi, rng_);
+      return sample && !sample->is_dirac ? sample->throughput : Rgb();
+    });
+    total.value += model_.dirac(point_.wi);
+    return total;
+  }
+
+  Point point_;
+  std::int64_t samples_;
+  Pfmc model_;
+  std::optional<ExactRest> exact_;
+  Rng rng_;
+};
 
 Results live_results(const Material& material, const Point& point, const PointsSettings& settings) {
-  const Rgb wavelengths = point.wavelength_nm ? Rgb(*point.wavelength_nm) : kRgb3WavelengthsNm;
-  const Pfmc model(material, wavelengths);
-  Rng rng(settings.seed, point.stream);
-  if (settings.quantity == Quantity::brdf) return live_brdf(model, point, settings.samples, rng);
-  if (settings.quantity == Quantity::albedo) return live_albedo(model, point, settings.samples, rng);
-  return {{"reflectance", model.film().power(point.wi.z).reflectance}};
+  LivePoint live(material, point, settings);
+  if (settings.quantity == Quantity::brdf) return live.brdf();
+  return settings.quantity == Quantity::albedo ? live.albedo() : live.film();
 }
 
 Results table_results(const TableBsdf& bsdf, const Point& point, Quantity quantity) {

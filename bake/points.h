@@ -13,6 +13,7 @@
 #include <iosfwd>
 #include <string>
 
+#include "bake/estimator.h"
 #include "sunbeam/material.h"
 #include "sunbeam/table.h"
 
@@ -22,8 +23,9 @@ enum class Quantity { brdf, albedo, film };
 
 struct PointsSettings {
   Quantity quantity = Quantity::brdf;
-  std::int64_t samples = 10000;  // walks a row (live only), at least 2
-  std::uint64_t seed = 1;        // row k uses random stream k
+  std::int64_t samples = 10000;           // walks a row (live only), at least 2
+  std::uint64_t seed = 1;                 // row k uses random stream k
+  Estimator estimator = Estimator::pfmc;  // live only; exact: rest and albedo by quadrature, stderr 0
 };
 
 // `name` is the CSV's, for messages. Throws Error before anything is written if a row is bad.

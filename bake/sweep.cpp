@@ -107,7 +107,7 @@ class Sweep {
                    {"recipe_hash", recipe_.hash},
                    {"seed", std::to_string(settings_.seed)},
                    {"samples", std::to_string(walks_.load())},
-                   {"estimator", kEstimatorName},
+                   {"estimator", name_of(Estimator::pfmc)},
                    {"spectrum", recipe_.spectrum},
                    {"tool_version", kToolVersion},
                    {"encoding", recipe_.table.encoding}};

@@ -4,12 +4,11 @@
 #include <cstdint>
 #include <functional>
 
+#include "bake/estimator.h"
 #include "bake/recipe.h"
 #include "sunbeam/table.h"
 
 namespace sunbeam {
-
-inline constexpr const char* kEstimatorName = "pfmc-unidirectional";
 
 struct SweepSettings {
   std::uint64_t seed = 1;

@@ -1,4 +1,4 @@
-// A table against live PFMC at random held-out parameters: how far off it is, and how much of that is noise.
+// A table against the live model at random held-out parameters: how far off it is, how much of that is noise.
 //
 // Point k draws its own parameters (uniform over each axis' physical range) and wi (uniform in cosine, theta
 // <= 89 degrees) from random stream k. Its error is
@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/estimator.h"
 #include "sunbeam/table.h"
 
 namespace sunbeam {
@@ -21,7 +22,8 @@ namespace sunbeam {
 struct VerifySettings {
   int points = 1000;
   std::uint64_t seed = 2024;
-  int threads = 0;  // 0: all
+  int threads = 0;                    // 0: all
+  Estimator truth = Estimator::pfmc;  // exact has no noise, and its floor is 0
   double tolerance_median = 0.01;
   double tolerance_p99 = 0.05;
   std::function<void(double fraction)> on_progress;

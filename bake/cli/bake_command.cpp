@@ -40,7 +40,7 @@ int run_bake(const BakeOptions& options) {
   std::size_t nodes = 1;
   for (const Axis& axis : recipe.grid) nodes *= axis.size();
   fmt::print(stderr, "{}: {} parameter nodes, {} x {} x {} angles, values by {}\n", options.recipe, nodes,
-             recipe.table.angles, recipe.table.angles, recipe.table.azimuths, kEstimatorName);
+             recipe.table.angles, recipe.table.angles, recipe.table.azimuths, name_of(Estimator::pfmc));
   SweepSettings settings;
   settings.seed = options.seed;
   settings.threads = options.threads;
@@ -51,7 +51,7 @@ int run_bake(const BakeOptions& options) {
   const std::string bytes = table_bytes(table, options.output);
   write_file_atomically(options.output, bytes);
   fmt::print(stderr, "{}: {} bytes, {} walks of {}\n", options.output, bytes.size(), table.info.at("samples"),
-             kEstimatorName);
+             name_of(Estimator::pfmc));
   return 0;
 }
 

@@ -26,6 +26,7 @@ int run_info(const InfoOptions& options);
 struct EvalOptions {
   std::string source, points;
   std::string quantity = "brdf";
+  std::string estimator = "pfmc";
   std::vector<std::string> overrides;
   std::int64_t samples = 10000;
   std::uint64_t seed = 1;
@@ -34,6 +35,7 @@ int run_eval(const EvalOptions& options);
 
 struct VerifyOptions {
   std::string table, json;
+  std::string truth = "pfmc";
   int points = 1000;
   int threads = 0;
   std::uint64_t seed = 2024;

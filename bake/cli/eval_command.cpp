@@ -18,7 +18,8 @@ Quantity parse_quantity(const std::string& name) {
 bool is_table(const std::string& path) { return extension(path) == ".exr" || extension(path) == ".vdb"; }
 
 void evaluate(const EvalOptions& options, std::istream& csv, const std::string& name) {
-  const PointsSettings settings{parse_quantity(options.quantity), options.samples, options.seed};
+  const PointsSettings settings{parse_quantity(options.quantity), options.samples, options.seed,
+                                estimator_of(options.estimator)};
   if (!is_table(options.source)) {
     evaluate_points_live(load_recipe(options.source, options.overrides).material, csv, name, settings,
                          std::cout);

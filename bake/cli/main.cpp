@@ -79,6 +79,8 @@ void add_eval(CLI::App& app, EvalOptions& o, int& exit_code) {
   command->add_option("--points", o.points, "CSV file, or - for standard input")->required();
   command->add_option("--quantity", o.quantity, "What to evaluate")
       ->check(CLI::IsMember({"brdf", "albedo", "film"}));
+  command->add_option("--estimator", o.estimator, "Evaluator of a recipe's rest and albedo")
+      ->check(CLI::IsMember({"pfmc", "exact"}));
   add_overrides(command, o.overrides);
   command->add_option("--samples", o.samples, "Walks a row, live only")->check(whole_number(2, kMostSamples));
   command->add_option("--seed", o.seed, "Random seed; row k uses stream k")->check(whole_number(0, kAnySeed));
@@ -91,6 +93,7 @@ void add_verify(CLI::App& app, VerifyOptions& o, int& exit_code) {
                   "sunbeam verify skin.exr --json report.json");
   command->add_option("table", o.table, "Table (.exr or .vdb)")->required();
   command->add_option("--points", o.points, "Random points")->check(whole_number(1, 100000000));
+  command->add_option("--truth", o.truth, "What to hold it against")->check(CLI::IsMember({"pfmc", "exact"}));
   command->add_option("--json", o.json, "Write the figures to this file");
   add_threads(command, o.threads);
   command->add_option("--seed", o.seed, "Random seed; point k uses stream k")

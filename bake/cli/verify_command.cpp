@@ -48,6 +48,7 @@ int run_verify(const VerifyOptions& options) {
   settings.points = options.points;
   settings.seed = options.seed;
   settings.threads = options.threads;
+  settings.truth = estimator_of(options.truth);
   settings.tolerance_median = recipe.accuracy.tolerance_median;
   settings.tolerance_p99 = recipe.accuracy.tolerance_p99;
   settings.on_progress = Progress("verify", "points", options.points);

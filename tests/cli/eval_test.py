@@ -168,6 +168,16 @@ class Live(EvalTest):
         self.assertGreater(float(rough["first_g"]), 0.001)
         self.assertEqual(float(rough["dirac_g"]), 0)
 
+    def test_the_exact_estimator_agrees_with_walks(self):
+        points = "theta_i_deg,theta_o_deg,phi_deg\n20,50,70\n70,10,180\n"
+        exact = self.rows("tiny.toml", points, "--estimator", "exact")
+        walked = self.rows("tiny.toml", points, "--samples", "20000")
+        for a, b in zip(exact, walked):
+            for channel in "rgb":
+                self.assertEqual(float(a[f"stderr_{channel}"]), 0)
+                difference = abs(float(a[f"rest_{channel}"]) - float(b[f"rest_{channel}"]))
+                self.assertLessEqual(difference, 5 * float(b[f"stderr_{channel}"]))  # 1 false alarm in 3e5
+
     def test_albedo_needs_one_angle_and_conserves_energy(self):
         rows = self.rows("tiny.toml", "theta_i_deg,albedo\n0,1\n45,1\n85,1\n45,0\n", "--quantity", "albedo",
                          "--samples", "500", "--set", "material.absorption_per_nm=0")

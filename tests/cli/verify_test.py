@@ -51,6 +51,16 @@ class Verify(support.CliTest):
         self.assertLess(report["reciprocity_max"], 1e-12)
         self.assertLess(report["dirac_error_p99"], 0.01)
 
+    def test_the_exact_evaluator_as_truth(self):
+        by_walks, _ = self.report("good.exr", *POINTS)
+        exact, result = self.report("good.exr", *POINTS, "--truth", "exact")
+        self.assertEqual((by_walks["truth"], exact["truth"]), ("pfmc-unidirectional", "exact-quadrature"))
+        self.assertIn("exact-quadrature", result.out)
+        self.assertEqual(exact["noise_floor"], 0)
+        self.assertGreater(exact["error_median"], 0)
+        # The same points and directions: the two differ by the noise of the walks alone.
+        self.assertLessEqual(abs(exact["error_median"] - by_walks["error_median"]), by_walks["noise_floor_p99"])
+
     def test_stdout_holds_the_same_figures(self):
         report, result = self.report("good.exr", *POINTS)
         for key in REQUIRED_KEYS:

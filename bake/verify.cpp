@@ -8,6 +8,7 @@
 #include <optional>
 #include <thread>
 
+#include "bake/cell.h"
 #include "bake/live/exact.h"
 #include "bake/live/pfmc.h"
 #include "sunbeam/table_bsdf.h"
@@ -17,7 +18,8 @@ namespace {
 
 constexpr std::size_t kDirections = 64;  // wo a point
 constexpr int kMostAttempts = 4096;      // to draw them
-constexpr int kFirstWalks = 256;         // a live run; doubled until the floor is low enough
+constexpr int kFirstWalks = 512;         // a live run; doubled until the expected floor is low enough
+constexpr int kBatches = 16;
 constexpr int kMostWalks = 1 << 16;
 constexpr double kDarkestAlbedo = 0.002;
 
@@ -43,13 +45,27 @@ Directions draw_directions(const TableBsdf& bsdf, const Vec3& wi, Rng& rng) {
   return result;
 }
 
-// Rest at every direction by `walks` live walks.
-std::vector<Rgb> live_rest(const Pfmc& model, const Vec3& wi, const std::vector<Vec3>& wo, int walks,
-                           Rng& rng) {
-  std::vector<Rgb> sums(wo.size());
-  for (int k = 0; k < walks; ++k) model.add_rest(wi, wo, rng, sums);
-  for (Rgb& value : sums) value *= 1.0 / walks;
-  return sums;
+// Rest at every direction by live walks, and the mean |difference| to expect from a second such run.
+struct WalkedRest {
+  std::vector<Rgb> value, expected_difference;
+};
+
+// Batches of walks tell the noise of their mean; for a normal one of variance v, E |difference| = 2 sqrt(v /
+// pi).
+WalkedRest walk_rest(const Pfmc& model, const Vec3& wi, const std::vector<Vec3>& wo, int walks, Rng& rng) {
+  const int batch_walks = walks / kBatches;
+  std::vector<Cell> cells(wo.size());
+  for (int batch = 0; batch < kBatches; ++batch) {
+    std::vector<Rgb> sums(wo.size());
+    for (int k = 0; k < batch_walks; ++k) model.add_rest(wi, wo, rng, sums);
+    for (std::size_t k = 0; k < wo.size(); ++k) cells[k].add(sums[k] / batch_walks);
+  }
+  WalkedRest rest;
+  for (const Cell& cell : cells) {
+    rest.value.push_back(cell.mean_of(kBatches));
+    rest.expected_difference.push_back(cell.standard_error(kBatches) * (2 / std::sqrt(kPi)));
+  }
+  return rest;
 }
 
 double mean_abs(const Rgb& a) {
@@ -79,12 +95,18 @@ class PointCheck {
   }
 
  private:
+  // The number of walks follows the expected floor, not the floor itself: stopping at runs that happen to
+  // agree would report one that is too low.
   std::vector<Rgb> walked_rest() {
     for (int walks = kFirstWalks;; walks *= 2) {
-      auto live = live_rest(*model_, wi_, directions_.wo, walks, rng_);
-      const auto again = live_rest(*model_, wi_, directions_.wo, walks, rng_);
-      point_.noise_floor = floor(live, again);
-      if (point_.noise_floor <= settings_.tolerance_median / 3 || walks >= kMostWalks) return live;
+      const WalkedRest live = walk_rest(*model_, wi_, directions_.wo, walks, rng_);
+      const double scale = denominator(live.value);
+      if (weighted(live.expected_difference) / scale > settings_.tolerance_median / 3 && walks < kMostWalks)
+        continue;
+      auto difference = walk_rest(*model_, wi_, directions_.wo, walks, rng_).value;
+      for (std::size_t k = 0; k < difference.size(); ++k) difference[k] = live.value[k] - difference[k];
+      point_.noise_floor = weighted(difference) / scale;
+      return live.value;
     }
   }
 
@@ -95,11 +117,11 @@ class PointCheck {
     return live;
   }
 
-  double floor(const std::vector<Rgb>& live, const std::vector<Rgb>& again) const {
-    double difference = 0;
-    for (std::size_t k = 0; k < live.size(); ++k)
-      difference += directions_.weight[k] * mean_abs(live[k] - again[k]);
-    return difference / denominator(live);
+  // Int |value| cos dwo.
+  double weighted(const std::vector<Rgb>& values) const {
+    double total = 0;
+    for (std::size_t k = 0; k < values.size(); ++k) total += directions_.weight[k] * mean_abs(values[k]);
+    return total;
   }
 
   double denominator(const std::vector<Rgb>& live) const {

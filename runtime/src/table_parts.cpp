@@ -47,6 +47,11 @@ std::string inventory(const TableParts& parts) {
   return list.empty() ? "no array" : list;
 }
 
+void require_finite(const NdArray& array) {
+  for (const float value : array.values())
+    if (!std::isfinite(value)) throw Error("array '" + array.name() + "' holds a value that is not finite");
+}
+
 template <std::size_t N>
 NdArray checked_array(const TableParts& parts, const std::string& name,
                       const std::array<const char*, N>& axis_names) {
@@ -59,8 +64,7 @@ NdArray checked_array(const TableParts& parts, const std::string& name,
     if (array->axes()[k].name != axis_names[k])
       throw Error("array '" + name + "': axis " + std::to_string(k) + " is '" + array->axes()[k].name +
                   "'; expected '" + axis_names[k] + "'");
-  for (const float value : array->values())
-    if (!std::isfinite(value)) throw Error("array '" + name + "' holds a value that is not finite");
+  require_finite(*array);
   return *array;
 }
 
@@ -162,6 +166,7 @@ TableParts to_parts(const Table& table) {
   for (const auto& key : material_keys()) parts.attributes["material." + key] = get_text(table.material, key);
   parts.arrays = {table.film_reflectance, table.remainder, table.rest_stderr};
   if (!table.film_transmittance.empty()) parts.arrays.push_back(table.film_transmittance);
+  for (const NdArray& array : parts.arrays) require_finite(array);
   // One order for every file form: both libraries list arrays in an order of their own.
   std::sort(parts.arrays.begin(), parts.arrays.end(),
             [](const auto& a, const auto& b) { return a.name() < b.name(); });

@@ -66,21 +66,24 @@ TEST(Verify, GoodTableIsWithinTolerance) {
 }
 
 // The table is as good as exact, so that its error is the live run's noise alone, while the floor is the
-// difference of two such runs: 1 / sqrt(2) = 0.71 of it on average. Stopping when two runs agree favours runs
-// that do so by chance, which lowers the floor: "close to" is within a factor of 1.5 either way.
+// difference of two such runs: 1 / sqrt(2) = 0.71 of it on average. A floor taken from the runs that ended the
+// search for the number of walks would be too low, and the ratio was then 1.2. Within 25 % for 100 points.
 TEST(Verify, ExactTableIsAtTheNoiseFloor) {
   const VerifyReport report = verify(clear_table(), settings(100, 0.06));
   EXPECT_GT(report.noise_floor.median, 0.005);  // well above the table's own noise
-  EXPECT_GT(report.error.median / report.noise_floor.median, 0.71 / 1.5);
-  EXPECT_LT(report.error.median / report.noise_floor.median, 1.5);
+  EXPECT_GT(report.error.median / report.noise_floor.median, 0.71 / 1.25);
+  EXPECT_LT(report.error.median / report.noise_floor.median, 0.71 * 1.25);
 }
 
-// A third of the tolerance, as promised, unless the walks run out.
+// A third of the tolerance is what each point may expect; a point's own draw scatters about it, so the promise
+// holds for the median and, three times over, for every point.
 TEST(Verify, NoiseFloorFollowsTheTolerance) {
   const VerifyReport coarse = verify(clear_table(), settings(30, 0.06));
-  const VerifyReport fine = verify(clear_table(), settings(30, 0.015));
-  EXPECT_LE(coarse.noise_floor.max, 0.02);
-  EXPECT_LE(fine.noise_floor.max, 0.005);
+  const VerifyReport fine = verify(clear_table(), settings(30, 0.006));
+  EXPECT_LE(coarse.noise_floor.median, 0.02);
+  EXPECT_LE(fine.noise_floor.median, 0.002);
+  EXPECT_LE(coarse.noise_floor.max, 0.06);
+  EXPECT_LE(fine.noise_floor.max, 0.006);
   EXPECT_GT(coarse.noise_floor.median, 1.5 * fine.noise_floor.median);
 }
 

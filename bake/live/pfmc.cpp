@@ -37,8 +37,9 @@ void Pfmc::connect(const Vec3& m, const Rgb& throughput, std::span<const Vec3> w
   for (std::size_t k = 0; k < wo.size(); ++k) {
     const auto passage = film_.cross(wo[k], film_.meet_from_outside(wo[k], rng));
     if (!passage) continue;
-    const double own_density = base_.density(m.z, passage->inside.z);
-    const double mis = passage->density > 0 ? passage->density / (passage->density + own_density) : 1;
+    const double mis = passage->density > 0
+                           ? passage->density / (passage->density + base_.density(m.z, passage->inside.z))
+                           : 1;
     sums[k] += throughput * base_.value(m.z, passage->inside.z) * passage->weight * (mis * radiance_scale_);
   }
 }

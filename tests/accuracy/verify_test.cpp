@@ -66,8 +66,9 @@ TEST(Verify, GoodTableIsWithinTolerance) {
 }
 
 // The table is as good as exact, so that its error is the live run's noise alone, while the floor is the
-// difference of two such runs: 1 / sqrt(2) = 0.71 of it on average. A floor taken from the runs that ended the
-// search for the number of walks would be too low, and the ratio was then 1.2. Within 25 % for 100 points.
+// difference of two such runs: 1 / sqrt(2) = 0.71 of it on average. A floor taken from the runs that ended
+// the search for the number of walks would be too low, and the ratio was then 1.2. Within 25 % for 100
+// points.
 TEST(Verify, ExactTableIsAtTheNoiseFloor) {
   const VerifyReport report = verify(clear_table(), settings(100, 0.06));
   EXPECT_GT(report.noise_floor.median, 0.005);  // well above the table's own noise
@@ -75,8 +76,8 @@ TEST(Verify, ExactTableIsAtTheNoiseFloor) {
   EXPECT_LT(report.error.median / report.noise_floor.median, 0.71 * 1.25);
 }
 
-// A third of the tolerance is what each point may expect; a point's own draw scatters about it, so the promise
-// holds for the median and, three times over, for every point.
+// A third of the tolerance is what each point may expect; a point's own draw scatters about it, so the
+// promise holds for the median and, three times over, for every point.
 TEST(Verify, NoiseFloorFollowsTheTolerance) {
   const VerifyReport coarse = verify(clear_table(), settings(30, 0.06));
   const VerifyReport fine = verify(clear_table(), settings(30, 0.006));

@@ -67,7 +67,7 @@ class Embedding(unittest.TestCase):
             run(BINARY, "bake", "recipe.toml", "-o", name, cwd=cls.folder)
 
     def configure(self, source, build, *options, check=True):
-        return run(CMAKE, "-S", source, "-B", self.folder / build, f"-DCMAKE_PREFIX_PATH={self.prefix}",
+        return run(CMAKE, "-G", "Ninja", "-S", source, "-B", self.folder / build, f"-DCMAKE_PREFIX_PATH={self.prefix}",
                    "-DCMAKE_BUILD_TYPE=Release", *options, check=check)
 
     def build(self, source, build, *options):

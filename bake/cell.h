@@ -5,9 +5,10 @@
 
 namespace sunbeam {
 
-// Values darker than this (1/sr) need no better absolute noise than at it: an albedo of 0.002, the floor of
-// verify's error.
-inline constexpr double kDarkestValue = 0.002 * kInvPi;
+// Below this albedo errors count as if it were this: the floor of verify's denominators. Values darker than
+// its Lambertian value (1/sr) need no better absolute noise than at it.
+inline constexpr double kDarkestAlbedo = 0.002;
+inline constexpr double kDarkestValue = kDarkestAlbedo * kInvPi;
 
 class Cell {
  public:

@@ -15,24 +15,29 @@ Range range_of(std::string_view key) {
   return {allowed.low, allowed.high};
 }
 
+constexpr const char* kRoughness = "roughness";
+
+// [alpha_u, alpha_v], which have to be equal.
+double read_roughness_pair(const ConfigTable& config) {
+  const auto values = config.numbers(kRoughness, range_of(kRoughness));
+  if (values.size() != 2)
+    config.fail(kRoughness,
+                fmt::format("found {} numbers; allowed: one number or a list of 2", values.size()));
+  if (values[0] != values[1])
+    config.fail(kRoughness,
+                fmt::format("found [{:g}, {:g}]; allowed: two equal values (an anisotropic film is not "
+                            "supported yet)",
+                            values[0], values[1]));
+  return values[0];
+}
+
 double read_roughness(const ConfigTable& config, double fallback) {
-  constexpr const char* kKey = "roughness";
-  if (!config.is_list(kKey)) fallback = config.number(kKey, range_of(kKey), fallback);
-  if (config.is_list(kKey)) {
-    const auto values = config.numbers(kKey, range_of(kKey));
-    if (values.size() != 2)
-      config.fail(kKey, fmt::format("found {} numbers; allowed: one number or a list of 2", values.size()));
-    if (values[0] != values[1])
-      config.fail(
-          kKey,
-          fmt::format(
-              "found [{:g}, {:g}]; allowed: two equal values (an anisotropic film is not supported yet)",
-              values[0], values[1]));
-    fallback = values[0];
-  }
-  if (fallback > 0 && fallback < kMinRoughness)
-    config.fail(kKey, fmt::format("found {:g}; allowed: 0 (smooth) or {:g} to 1", fallback, kMinRoughness));
-  return fallback;
+  const double value = config.is_list(kRoughness) ? read_roughness_pair(config)
+                                                  : config.number(kRoughness, range_of(kRoughness), fallback);
+  if (value > 0 && value < kMinRoughness)
+    config.fail(kRoughness,
+                fmt::format("found {:g}; allowed: 0 (smooth) or {:g} to 1", value, kMinRoughness));
+  return value;
 }
 
 Material read_material(const ConfigTable& config) {

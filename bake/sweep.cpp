@@ -1,16 +1,13 @@
 #include "bake/sweep.h"
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 
 #include <atomic>
-#include <mutex>
-#include <thread>
 
 #include "bake/cell.h"
 #include "bake/film_tables.h"
 #include "bake/live/pfmc.h"
+#include "bake/parallel_tasks.h"
 #include "bake/version.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/text.h"
@@ -96,13 +93,8 @@ class Sweep {
   }
 
   Table run() {
-    const int threads =
-        settings_.threads > 0 ? settings_.threads : static_cast<int>(std::thread::hardware_concurrency());
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                    static_cast<std::size_t>(threads));
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, nodes_, 1), [&](const auto& range) {
-      for (std::size_t node = range.begin(); node < range.end(); ++node) bake_node(node);
-    });
+    run_parallel_tasks(nodes_, settings_.threads, settings_.on_progress,
+                       [&](std::size_t node) { bake_node(node); });
     table_.info = {{"recipe", recipe_.text},
                    {"recipe_hash", recipe_.hash},
                    {"seed", std::to_string(settings_.seed)},
@@ -127,7 +119,6 @@ class Sweep {
     }
     average_reciprocal(rows, table_.remainder.axes()[6].size());
     store(node, parameters, material, rows);
-    report();
   }
 
   void store(std::size_t node, const Parameters& parameters, const Material& material,
@@ -147,21 +138,12 @@ class Sweep {
     }
   }
 
-  void report() {
-    const std::size_t done = ++done_;
-    if (!settings_.on_progress) return;
-    const std::lock_guard lock(progress_mutex_);
-    settings_.on_progress(static_cast<double>(done) / static_cast<double>(nodes_));
-  }
-
   const Recipe& recipe_;
   const SweepSettings& settings_;
   Table table_;
   std::vector<Vec3> wi_, wo_;
   std::size_t nodes_ = 0;
   std::atomic<std::uint64_t> walks_ = 0;
-  std::atomic<std::size_t> done_ = 0;
-  std::mutex progress_mutex_;
 };
 
 double cells_of(const std::vector<Axis>& axes) {

@@ -1,16 +1,11 @@
 #include "bake/verify.h"
 
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-
-#include <atomic>
-#include <mutex>
 #include <optional>
-#include <thread>
 
 #include "bake/cell.h"
 #include "bake/live/exact.h"
 #include "bake/live/pfmc.h"
+#include "bake/parallel_tasks.h"
 #include "sunbeam/table_bsdf.h"
 
 namespace sunbeam {
@@ -21,7 +16,6 @@ constexpr int kMostAttempts = 4096;      // to draw them
 constexpr int kFirstWalks = 512;         // a live run; doubled until the expected floor is low enough
 constexpr int kBatches = 16;
 constexpr int kMostWalks = 1 << 16;
-constexpr double kDarkestAlbedo = 0.002;
 
 double draw(const Axis& axis, Rng& rng) { return lerp(rng.uniform(), axis.low(), axis.high()); }
 
@@ -149,7 +143,7 @@ class PointCheck {
   void check_reciprocity(const Vec3& wo) {
     const Rgb forward = bsdf_->eval(wo, wi_, rng_), backward = bsdf_->eval(wi_, wo, rng_);
     for (int c = 0; c < 3; ++c) {
-      const double scale = std::max({forward[c], backward[c], kDarkestAlbedo * kInvPi});
+      const double scale = std::max({forward[c], backward[c], kDarkestValue});
       point_.reciprocity = std::max(point_.reciprocity, std::abs(forward[c] - backward[c]) / scale);
     }
   }
@@ -184,19 +178,8 @@ VerifyReport verify(const Table& table, const VerifySettings& settings) {
   VerifyReport report;
   report.truth = name_of(settings.truth);
   report.points.resize(static_cast<std::size_t>(settings.points));
-  std::atomic<std::size_t> done = 0;
-  std::mutex progress_mutex;
-  const int threads =
-      settings.threads > 0 ? settings.threads : static_cast<int>(std::thread::hardware_concurrency());
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(threads));
-  tbb::parallel_for(std::size_t{0}, report.points.size(), [&](std::size_t k) {
-    report.points[k] = PointCheck(table, settings, k).run();
-    const double fraction = static_cast<double>(++done) / static_cast<double>(report.points.size());
-    if (!settings.on_progress) return;
-    const std::lock_guard lock(progress_mutex);
-    settings.on_progress(fraction);
-  });
+  run_parallel_tasks(report.points.size(), settings.threads, settings.on_progress,
+                     [&](std::size_t k) { report.points[k] = PointCheck(table, settings, k).run(); });
   report.error = quantiles(report.points, &VerifyPoint::error);
   report.rest_error = quantiles(report.points, &VerifyPoint::rest_error);
   report.noise_floor = quantiles(report.points, &VerifyPoint::noise_floor);

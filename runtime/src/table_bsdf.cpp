@@ -36,13 +36,6 @@ CosineCurve sampled_curve(std::size_t nodes, F f) {
   return CosineCurve(std::move(values));
 }
 
-// The two sampling nodes around cos_o.
-Bracket sampling_bracket(double cos_o) {
-  const double x = std::clamp(cos_o, 0.0, 1.0) * static_cast<double>(kSamplingNodes - 1);
-  const auto lower = std::min(static_cast<std::size_t>(x), kSamplingNodes - 2);
-  return {lower, lower + 1, x - static_cast<double>(lower)};
-}
-
 }  // namespace
 
 TableBsdf::TableBsdf(const Table& table, const Parameters& parameters, OutsideGrid outside)
@@ -139,13 +132,13 @@ double TableBsdf::first_chance(double cos_o) const { return first_chance_(cos_o)
 
 // Density over wi, 1/sr: a mixture of the two nearest nodes' marginals, uniform in azimuth.
 double TableBsdf::rest_pdf(double cos_o, double cos_i) const {
-  const Bracket at = sampling_bracket(cos_o);
+  const Bracket at = even_bracket(cos_o, kSamplingNodes);
   return lerp(at.upper_weight, rest_marginals_[at.lower].pdf(cos_i), rest_marginals_[at.upper].pdf(cos_i)) /
          (2 * kPi);
 }
 
 Vec3 TableBsdf::sample_rest(const Vec3& wo, Rng& rng) const {
-  const Bracket at = sampling_bracket(wo.z);
+  const Bracket at = even_bracket(wo.z, kSamplingNodes);
   const auto& marginal = rest_marginals_[rng.uniform() < at.upper_weight ? at.upper : at.lower];
   const double cosine = marginal.sample(rng.uniform());
   return direction_from_cosine(cosine, 2 * kPi * rng.uniform());

@@ -20,16 +20,21 @@ namespace sunbeam {
 
 enum class OutsideGrid { clamp, refuse };
 
+// Where a cosine lies among at least two nodes spread evenly over [0, 1]; clamped.
+inline Bracket even_bracket(double cosine, std::size_t nodes) {
+  const double x = std::clamp(cosine, 0.0, 1.0) * static_cast<double>(nodes - 1);
+  const auto lower = std::min(static_cast<std::size_t>(x), nodes - 2);
+  return {lower, lower + 1, x - static_cast<double>(lower)};
+}
+
 // A colour over cos(theta) in [0, 1], equally spaced nodes, linear between.
 class CosineCurve {
  public:
   CosineCurve() = default;
   explicit CosineCurve(std::vector<Rgb> values) : values_(std::move(values)) {}
   Rgb operator()(double cosine) const {
-    const double x = std::clamp(cosine, 0.0, 1.0) * static_cast<double>(values_.size() - 1);
-    const auto lower = std::min(static_cast<std::size_t>(x), values_.size() - 2);
-    const double t = x - static_cast<double>(lower);
-    return (1 - t) * values_[lower] + t * values_[lower + 1];
+    const Bracket at = even_bracket(cosine, values_.size());
+    return (1 - at.upper_weight) * values_[at.lower] + at.upper_weight * values_[at.upper];
   }
 
  private:

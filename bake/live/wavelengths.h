@@ -1,0 +1,42 @@
+// The wavelengths that a live model carries, the base at each of them, and how they fold into linear RGB.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sunbeam/material.h"
+
+namespace sunbeam {
+
+// Live models keep what they carry on the stack.
+inline constexpr std::size_t kMostWavelengths = 64;
+
+struct Wavelengths {
+  std::vector<double> nm;          // vacuum
+  std::vector<double> albedo;      // of the base, 0 to 1
+  std::vector<double> absorption;  // of the pigment, relative to Material::absorption_per_nm
+  std::vector<Rgb> weight;         // rgb = sum_k weight_k value_k
+
+  std::size_t size() const { return nm.size(); }
+
+  Rgb fold(std::span<const double> values) const {
+    Rgb sum;
+    for (std::size_t k = 0; k < size(); ++k) sum += values[k] * weight[k];
+    return sum;
+  }
+
+  // The paper's three wavelengths, 650, 510 and 475 nm, taken as linear R, G, B; albedo likewise.
+  static Wavelengths rgb3(const Material& material) {
+    return {{650, 510, 475},
+            {material.albedo.r, material.albedo.g, material.albedo.b},
+            {1, 1, 1},
+            {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  }
+
+  // One wavelength in every channel, with the albedo of the first.
+  static Wavelengths monochromatic(const Material& material, double nm) {
+    return {{nm}, {material.albedo.r}, {1}, {Rgb(1)}};
+  }
+};
+
+}  // namespace sunbeam

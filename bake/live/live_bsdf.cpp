@@ -1,23 +1,63 @@
 #include "bake/live/live_bsdf.h"
 
+#include <algorithm>
+
+
 namespace sunbeam {
 
-LiveBsdf::LiveBsdf(const Material& material, const Rgb& wavelengths_nm)
-    : pfmc_(material, wavelengths_nm), transmitted_cosine_(0) {
+LiveBsdf::LiveBsdf(const Material& material, const Wavelengths& wavelengths)
+    : pfmc_(material, wavelengths), ggx_(material.roughness), share_{}, transmitted_cosine_(0) {
+  for (int k = 0; k < pfmc_.wavelengths(); ++k) share_[k + 1] = share_[k] + pfmc_.importance(k);
+  for (int i = 0; i <= kChances; ++i)
+    reflect_chance_[i] = pfmc_.reflect_chance(static_cast<double>(i) / kChances);
   constexpr int kNodes = 32;  // midpoints in sin^2; the density only steers MIS weights
   for (int i = 0; i < kNodes; ++i)
-    transmitted_cosine_ += kPi / kNodes * mean_transmittance(std::sqrt((i + 0.5) / kNodes));
+    transmitted_cosine_ += kPi / kNodes * (1 - reflect_chance(std::sqrt((i + 0.5) / kNodes)));
+}
+
+// Calls use(model) with the model at heroes drawn from `rng`, or at all wavelengths if they are few.
+template <class Use>
+auto LiveBsdf::with_heroes(Rng& rng, Use use) const {
+  const int count = pfmc_.wavelengths();
+  if (count <= kHeroes) return use(pfmc_);
+  std::array<Pfmc::Pick, kHeroes> picks;
+  const double start = rng.uniform();
+  for (int i = 0; i < kHeroes; ++i) {
+    const double at = (start + i) / kHeroes;
+    const auto above = std::upper_bound(share_.begin() + 1, share_.begin() + count, at);
+    const int k = static_cast<int>(above - share_.begin()) - 1;
+    picks[i] = {k, 1 / (kHeroes * pfmc_.importance(k))};
+  }
+  return use(pfmc_.at(picks));
 }
 
 Rgb LiveBsdf::eval(const Vec3& wo, const Vec3& wi, Rng& rng) const {
   if (wo.z <= 0 || wi.z <= 0) return {};
-  return pfmc_.first(wo, wi) + pfmc_.estimate_rest(wo, wi, rng);
+  return pfmc_.first(wo, wi) +
+         with_heroes(rng, [&](const Pfmc& model) { return model.estimate_rest(wo, wi, rng); });
+}
+
+std::optional<BsdfSample> LiveBsdf::sample(const Vec3& wo, Rng& rng) const {
+  return with_heroes(rng, [&](const Pfmc& model) { return model.sample(wo, rng); });
+}
+
+double LiveBsdf::pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const {
+  return with_heroes(rng, [&](const Pfmc& model) { return model.estimate_pdf(wo, wi, rng); });
+}
+
+double LiveBsdf::reflect_chance(double cosine) const {
+  const double x = std::clamp(cosine, 0.0, 1.0) * kChances;
+  const int i = std::min(static_cast<int>(x), kChances - 1);
+  return lerp(x - i, reflect_chance_[i], reflect_chance_[i + 1]);
 }
 
 double LiveBsdf::mis_pdf(const Vec3& wo, const Vec3& wi) const {
   if (wo.z <= 0 || wi.z <= 0) return 0;
-  const double rest = mean_transmittance(wo.z) * mean_transmittance(wi.z) * wi.z / transmitted_cosine_;
-  return pfmc_.film().first_surface_pdf(wo, wi) + rest;
+  const double rest =
+      (1 - reflect_chance(wo.z)) * (1 - reflect_chance(wi.z)) * wi.z / transmitted_cosine_;
+  if (ggx_.alpha() == 0) return rest;
+  const Vec3 h = normalize(wo + wi);
+  return ggx_.reflection_pdf(wo, h) * reflect_chance(dot(wo, h)) + rest;
 }
 
 }  // namespace sunbeam

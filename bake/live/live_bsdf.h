@@ -1,4 +1,8 @@
-// The live model behind the BSDF contract: eval and pdf are unbiased estimates from one walk.
+// The live model behind the BSDF contract: eval and pdf are unbiased estimates from one packet of walks.
+//
+// With many wavelengths every call draws kHeroes of them at random, in proportion to their share in colour and
+// spread evenly over it (Wilkie et al. 2014: one random hero, the others at fixed distances from it), and
+// weighs them accordingly: unbiased in RGB, and its colour noise averages out.
 #pragma once
 
 #include "bake/live/pfmc.h"
@@ -8,23 +12,33 @@ namespace sunbeam {
 
 class LiveBsdf final : public Bsdf {
  public:
-  explicit LiveBsdf(const Material& material, const Rgb& wavelengths_nm = kRgb3WavelengthsNm);
+  static constexpr int kHeroes = 4;
+
+  LiveBsdf(const Material& material, const Wavelengths& wavelengths);
+  // The paper's three wavelengths.
+  explicit LiveBsdf(const Material& material) : LiveBsdf(material, Wavelengths::rgb3(material)) {}
 
   Rgb eval(const Vec3& wo, const Vec3& wi, Rng& rng) const override;
-  std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override { return pfmc_.sample(wo, rng); }
-  double pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const override {
-    return pfmc_.estimate_pdf(wo, wi, rng);
-  }
+  std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override;
+  double pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const override;
 
-  // The first-surface density exactly, and for the rest the chance of passing a smooth film at wo times a
-  // density proportional to T(wi) cos(wi): what a smooth film over a white base without pigment gives.
+  // The first-surface density, and for the rest the chance of passing a smooth film at wo times a density
+  // proportional to T(wi) cos(wi): what a smooth film over a white base without pigment gives. Reflectances
+  // come from a table over the cosine. How far it is off is measured in docs/live.md.
   double mis_pdf(const Vec3& wo, const Vec3& wi) const override;
 
  private:
-  double mean_transmittance(double cosine) const { return mean(pfmc_.film().power(cosine).transmittance); }
+  template <class Use>
+  auto with_heroes(Rng& rng, Use use) const;
+  double reflect_chance(double cosine) const;
+
+  static constexpr int kChances = 128;  // intervals of the cosine
 
   Pfmc pfmc_;
-  double transmitted_cosine_;  // Int T(w) cos(w) dw
+  Ggx ggx_;
+  std::array<double, kChances + 1> reflect_chance_;
+  std::array<double, kMostWavelengths + 1> share_;  // cumulative, of the wavelengths
+  double transmitted_cosine_;                       // Int T(w) cos(w) dw
 };
 
 }  // namespace sunbeam

@@ -3,130 +3,173 @@
 namespace sunbeam {
 namespace {
 
-// Russian roulette starts when the film and the albedo together have left less than this of a walk. It looks
-// at neither absorption nor base sampling: with the product path later visits can outweigh the first.
-constexpr double kRouletteStart = 0.02;
+using Lane = walk::Events<double>;
+
+constexpr std::size_t kChunk = 32;  // directions that share one walk; their sums are on the stack
 
 }  // namespace
 
-Pfmc::Pfmc(const Material& material, const Rgb& wavelengths_nm)
-    : film_(material, wavelengths_nm),
-      base_(material),
-      radiance_scale_(material.radiance_scale()),
-      brightest_albedo_(max_component(material.albedo)) {}
+Pfmc::Pfmc(const Material& material, const Wavelengths& wavelengths, const walk::Kernels& kernels)
+    : layers_(material, wavelengths), weight_{}, importance_{}, ggx_(material.roughness), kernels_(&kernels) {
+  double sum = 0;
+  for (int k = 0; k < layers_.count; ++k) {
+    weight_[k] = wavelengths.weight[k];
+    importance_[k] = mean(transform(weight_[k], [](double w) { return std::abs(w); }));
+    sum += importance_[k];
+  }
+  for (int k = 0; k < layers_.count; ++k) importance_[k] /= sum;
+}
 
-Rgb Pfmc::estimate_rest(const Vec3& wo, const Vec3& wi, Rng& rng) const {
+Pfmc Pfmc::at(std::span<const Pick> picks) const {
+  Pfmc other(*this);
+  other.layers_.pick(picks.size(), [&](std::size_t k) { return picks[k].wavelength; });
+  for (std::size_t k = 0; k < picks.size(); ++k) {
+    other.weight_[k] = picks[k].factor * weight_[picks[k].wavelength];
+    other.importance_[k] = 1.0 / static_cast<double>(picks.size());
+  }
+  return other;
+}
+
+Rgb Pfmc::fold(const double* values) const {
   Rgb sum;
-  add_rest(wi, {&wo, 1}, rng, {&sum, 1});
+  for (int k = 0; k < layers_.count; ++k) sum += values[k] * weight_[k];
   return sum;
 }
 
-void Pfmc::add_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, std::span<Rgb> sums) const {
-  const auto entry = film_.cross(wi, film_.meet_from_outside(wi, rng));
-  if (!entry) return;
-  Vec3 m = entry->inside;
-  Rgb throughput = entry->weight;
-  double roulette = 1;
-  do connect(m, throughput, wo, rng, sums);
-  while (next_visit(m, throughput, roulette, rng, wo, sums));
+double Pfmc::chance(const Powers& powers) const {
+  double sum = 0;
+  for (int k = 0; k < layers_.count; ++k) sum += importance_[k] * powers[k];
+  return std::clamp(sum, 0.0, 1.0);
 }
 
-// The base sends what arrives along m to every wo, through a passage drawn from that wo.
-void Pfmc::connect(const Vec3& m, const Rgb& throughput, std::span<const Vec3> wo, Rng& rng,
-                   std::span<Rgb> sums) const {
-  for (std::size_t k = 0; k < wo.size(); ++k) {
-    const auto passage = film_.cross(wo[k], film_.meet_from_outside(wo[k], rng));
-    if (!passage) continue;
-    const double mis = passage->density > 0
-                           ? passage->density / (passage->density + base_.density(m.z, passage->inside.z))
-                           : 1;
-    sums[k] += throughput * base_.value(m.z, passage->inside.z) * passage->weight * (mis * radiance_scale_);
+Pfmc::Powers Pfmc::reflectances(const ThinFilm& film, double cosine) const {
+  Powers powers;
+  const walk::FilmLanes<double> lanes(film, layers_.phases, std::clamp(cosine, 0.0, 1.0));
+  lanes.reflectances([&](int k, double r) { powers[k] = r; });
+  return powers;
+}
+
+Rgb Pfmc::film_reflectance(double cos_exterior) const {
+  return fold(reflectances(layers_.film, cos_exterior).data());
+}
+
+Rgb Pfmc::first(const Vec3& wo, const Vec3& wi) const {
+  if (layers_.is_smooth() || wo.z <= 0 || wi.z <= 0) return {};
+  const Vec3 h = normalize(wo + wi);
+  return ggx_.reflection(wo, wi, h) * film_reflectance(dot(wo, h));
+}
+
+Rgb Pfmc::dirac(const Vec3& wo) const { return layers_.is_smooth() ? film_reflectance(wo.z) : Rgb(); }
+
+double Pfmc::reflect_chance(double cos_exterior) const {
+  return chance(reflectances(layers_.film, cos_exterior));
+}
+
+double Pfmc::first_pdf(const Vec3& wo, const Vec3& wi) const {
+  if (layers_.is_smooth() || wo.z <= 0 || wi.z <= 0) return 0;
+  const Vec3 h = normalize(wo + wi);
+  return ggx_.reflection_pdf(wo, h) * reflect_chance(dot(wo, h));
+}
+
+Rgb Pfmc::estimate_rest(const Vec3& wo, const Vec3& wi, Rng& rng, Technique technique) const {
+  Rgb sum;
+  add_rest(wi, {&wo, 1}, rng, {&sum, 1}, technique);
+  return sum;
+}
+
+void Pfmc::add_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, std::span<Rgb> sums,
+                    Technique technique) const {
+  if (wi.z <= 0) return;
+  const std::size_t chunk = technique == Technique::unidirectional ? kChunk : 1;
+  for (std::size_t first = 0; first < wo.size(); first += chunk) {
+    const std::size_t exits = std::min(chunk, wo.size() - first);
+    double cosines[kChunk], values[kChunk * kMostWavelengths];
+    for (std::size_t k = 0; k < exits; ++k) cosines[k] = wo[first + k].z;
+    std::fill_n(values, exits * layers_.count, 0.0);
+    if (technique == Technique::unidirectional)
+      kernels_->unidirectional(layers_, wi.z, cosines, static_cast<int>(exits), rng, values);
+    else
+      kernels_->bidirectional(layers_, wi.z, cosines[0], rng, values);
+    for (std::size_t k = 0; k < exits; ++k)
+      if (cosines[k] > 0) sums[first + k] += fold(values + k * layers_.count);
   }
-}
-
-// The direction the walk itself takes from the base passes the film to every wo.
-void Pfmc::connect_own(const Vec3& m, const Rgb& throughput, double density, std::span<const Vec3> wo,
-                       std::span<Rgb> sums) const {
-  for (std::size_t k = 0; k < wo.size(); ++k) {
-    const Exit exit = film_.exit(m, wo[k]);
-    sums[k] += throughput * exit.value * (density / (density + exit.density));
-  }
-}
-
-// From the base up to the film and back down. False when the walk ends.
-bool Pfmc::next_visit(Vec3& m, Rgb& throughput, double& roulette, Rng& rng, std::span<const Vec3> wo,
-                      std::span<Rgb> sums) const {
-  const auto up = base_.sample(m.z, rng);
-  throughput *= up.weight;
-  if (is_black(throughput)) return false;
-  if (film_.has_glossy_crossing()) connect_own(up.direction, throughput, up.density, wo, sums);
-
-  const Facet facet = film_.meet_from_below(up.direction, rng);
-  const auto down = film_.reflect_down(up.direction, facet);
-  if (!down) return false;
-  m = down->direction;
-  throughput *= down->weight;
-
-  roulette *= brightest_albedo_ * max_component(down->weight);
-  if (roulette >= kRouletteStart) return true;
-  const double survival = roulette / kRouletteStart;
-  if (rng.uniform() >= survival) return false;
-  throughput *= 1 / survival;
-  roulette = kRouletteStart;
-  return true;
 }
 
 std::optional<BsdfSample> Pfmc::sample(const Vec3& wo, Rng& rng) const {
   if (wo.z <= 0) return {};
-  const Facet entry = film_.meet_from_outside(wo, rng);
-  if (rng.uniform() < entry.reflect_chance) {
-    const auto up = film_.reflect_up(wo, entry);
-    if (!up) return {};
-    return BsdfSample{up->direction, up->weight / entry.reflect_chance, film_.is_smooth()};
+  const Vec3 h = layers_.is_smooth() ? Vec3{0, 0, 1} : ggx_.sample_visible(wo, {rng.uniform(), rng.uniform()});
+  const double cosine = std::clamp(dot(wo, h), 0.0, 1.0);
+  Powers power = reflectances(layers_.film, cosine);
+  const double reflect_chance = chance(power);
+  if (rng.uniform() < reflect_chance) {
+    const Vec3 wi = reflect(wo, h);
+    if (wi.z <= 0) return {};
+    const double shadowing = layers_.is_smooth() ? 1 : ggx_.g2_over_g1(wo, wi);
+    return BsdfSample{wi, fold(power.data()) * (shadowing / reflect_chance), layers_.is_smooth()};
   }
-  const auto passage = film_.cross(wo, entry);
-  if (!passage) return {};
-  Vec3 m = passage->inside;
-  Rgb throughput = passage->weight / (1 - entry.reflect_chance);
+  const auto passage = Lane(layers_).cross(wo.z, {h.z, cosine}, layers_.index_ratio);
+  if (passage.weight == 0) return {};
+  const double share = passage.weight / (1 - reflect_chance);
+  for (int k = 0; k < layers_.count; ++k) power[k] = (1 - power[k]) * share;
+  return sample_below(passage.cosine, power, rng);
+}
+
+// A walk that reaches the base at `cosine`.
+std::optional<BsdfSample> Pfmc::sample_below(double cosine, Powers throughput, Rng& rng) const {
+  const Lane events(layers_);
   for (;;) {
-    const auto up = base_.sample(m.z, rng);
-    throughput *= up.weight;
-    const Facet facet = film_.meet_from_below(up.direction, rng);
-    if (rng.uniform() >= facet.reflect_chance) {
-      const auto out = film_.leave(up.direction, facet);
-      if (!out) return {};
-      return BsdfSample{out->direction, throughput * out->weight / (1 - facet.reflect_chance), false};
+    const auto up = events.leave_base(layers_.open_guide, rng);
+    const double path = layers_.product ? 1 / (cosine * up.cosine) : 1 / cosine + 1 / up.cosine;
+    for (int k = 0; k < layers_.count; ++k) throughput[k] *= layers_.albedo[k] * up.share;
+    events.attenuate(path, throughput);
+
+    const auto facet = events.meet(up.cosine, rng);
+    const Powers power = reflectances(layers_.film_below, facet.cosine);
+    const double reflect_chance = chance(power);
+    if (rng.uniform() >= reflect_chance) {
+      const auto out = events.cross(up.cosine, facet, 1 / layers_.index_ratio);
+      if (out.weight == 0) return {};
+      const double share = out.weight / (1 - reflect_chance);
+      for (int k = 0; k < layers_.count; ++k) throughput[k] *= (1 - power[k]) * share;
+      return BsdfSample{direction_from_cosine(out.cosine, 2 * kPi * rng.uniform()), fold(throughput.data()),
+                        false};
     }
-    const auto down = film_.reflect_down(up.direction, facet);
-    if (!down) return {};
-    m = down->direction;
-    throughput *= down->weight / facet.reflect_chance;
+    const auto down = events.mirror(up.cosine, facet);
+    if (down.weight == 0) return {};
+    for (int k = 0; k < layers_.count; ++k) throughput[k] *= power[k] * (down.weight / reflect_chance);
+    cosine = down.cosine;
   }
 }
 
-// Density that a walk leaving the base, having arrived at cos_in, goes out along wi at this visit.
-double Pfmc::connect_density(double cos_in, const Vec3& wi, Rng& rng) const {
-  const Facet facet = film_.meet_from_outside(wi, rng);
-  const auto passage = film_.cross(wi, facet);
-  if (!passage) return 0;
-  return base_.density(cos_in, passage->inside.z) * (1 - facet.reflect_chance) * passage->reverse_ratio;
+// Density that a walk on its way up leaves along wi, over that of the direction inside, which is returned in
+// `cosine`.
+double Pfmc::leave_pdf(const Vec3& wi, Rng& rng, double& cosine) const {
+  const Lane events(layers_);
+  const auto facet = events.meet(wi.z, rng);
+  const auto passage = events.cross(wi.z, facet, layers_.index_ratio);
+  cosine = passage.cosine;
+  if (passage.weight == 0) return 0;
+  const double pass_chance = 1 - reflect_chance(facet.cosine);
+  if (!layers_.bends) return pass_chance;
+  const double solid_angles = square(layers_.index_ratio) * wi.z / cosine;
+  return pass_chance * solid_angles * (layers_.is_smooth() ? 1 : 1 / events.g1_ratio(wi.z, cosine));
 }
 
 double Pfmc::estimate_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const {
   if (wo.z <= 0 || wi.z <= 0) return 0;
-  double pdf = film_.first_surface_pdf(wo, wi);
-  const Facet entry = film_.meet_from_outside(wo, rng);
-  const auto passage = film_.cross(wo, entry);
-  if (!passage) return pdf;
-  Vec3 m = passage->inside;
-  double chance = 1 - entry.reflect_chance;
+  double pdf = first_pdf(wo, wi);
+  const Lane events(layers_);
+  const auto entry = events.meet(wo.z, rng);
+  if (events.cross(wo.z, entry, layers_.index_ratio).weight == 0) return pdf;
+  const double entered = 1 - reflect_chance(entry.cosine);
   for (;;) {
-    pdf += chance * connect_density(m.z, wi, rng);
-    const auto up = base_.sample(m.z, rng);
-    const Facet facet = film_.meet_from_below(up.direction, rng);
-    const auto down = film_.reflect_down(up.direction, facet);
-    if (!down || rng.uniform() >= facet.reflect_chance) return pdf;
-    m = down->direction;
+    double cosine;
+    const double leave = leave_pdf(wi, rng, cosine);
+    pdf += entered * leave * layers_.open_guide.density(square(cosine)) * cosine * kInvPi;
+    const auto up = events.leave_base(layers_.open_guide, rng);
+    const auto facet = events.meet(up.cosine, rng);
+    if (events.mirror(up.cosine, facet).weight == 0) return pdf;
+    if (rng.uniform() >= chance(reflectances(layers_.film_below, facet.cosine))) return pdf;
   }
 }
 

@@ -1,67 +1,93 @@
-// Position-free Monte Carlo (Guo, Hasan, Zhao 2018) for the layered skin, unidirectional.
+// Position-free Monte Carlo (Guo, Hasan, Zhao 2018) for the layered skin.
 //
 // A path is a sequence of directions only. Its value f(wo, wi) is the sum over all paths that enter along wi
 // and leave along wo; here split into
 //   first = the reflection off the film's upper surface (closed form; a Dirac weight if the film is smooth),
 //   rest  = everything that has been below the film, estimated by walks.
-// A walk enters along wi. At each visit of the base it connects to wo through the film: a passage drawn from
-// wo (always), and the walk's own next direction passing to wo (where facets bend light); the two are
-// combined by the balance heuristic over *inside* directions, the measure they share. Reciprocity of the
-// passage turns leaving into entering, which leaves one factor (n0/n2)^2 on the whole rest.
+// Unidirectional: walks from wi connect to wo through the film at every visit of the base (walk.h).
+// Bidirectional: walks from both sides, every connection, weighted by the balance heuristic
+// (bidirectional.h). Both are unbiased and exact in expectation for every film, smooth or rough, straight or
+// refracting. Reciprocity of the passage turns leaving into entering, which leaves one factor (n0/n2)^2 on the
+// whole rest.
 //
-// Everything is per wavelength, three at once; directions are chosen by means over the three. No hidden
-// state.
+// One estimate is the mean of kLanes stratified walks, worked on side by side at all wavelengths, and folded
+// into linear RGB. Directions are chosen alike for all wavelengths. No hidden state, no allocation in a call.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 
-#include "bake/live/base.h"
-#include "bake/live/film_interface.h"
+#include "bake/live/events.h"
+#include "bake/live/kernels.h"
+#include "bake/live/wavelengths.h"
 #include "sunbeam/bsdf.h"
+#include "sunbeam/ggx.h"
 
 namespace sunbeam {
 
-// The paper's three wavelengths, taken as linear R, G, B.
-inline constexpr Rgb kRgb3WavelengthsNm{650, 510, 475};
+enum class Technique { unidirectional, bidirectional };
 
 class Pfmc {
  public:
-  explicit Pfmc(const Material& material, const Rgb& wavelengths_nm = kRgb3WavelengthsNm);
+  Pfmc(const Material& material, const Wavelengths& wavelengths,
+       const walk::Kernels& kernels = walk::best_kernels());
+  // The paper's three wavelengths.
+  explicit Pfmc(const Material& material) : Pfmc(material, Wavelengths::rgb3(material)) {}
 
-  const FilmInterface& film() const { return film_; }
-  const PigmentedBase& base() const { return base_; }
+  int wavelengths() const { return layers_.count; }
+
+  // Film reflectance from outside. Exact.
+  Rgb film_reflectance(double cos_exterior) const;
 
   // First-surface value in 1/sr; 0 for a smooth film. Exact.
-  Rgb first(const Vec3& wo, const Vec3& wi) const { return film_.first_surface(wo, wi); }
+  Rgb first(const Vec3& wo, const Vec3& wi) const;
 
   // Weight of the mirror direction; 0 for a rough film. Exact.
-  Rgb dirac(const Vec3& wo) const { return film_.is_smooth() ? film_.power(wo.z).reflectance : Rgb(); }
+  Rgb dirac(const Vec3& wo) const;
 
-  // Adds one walk's unbiased estimate of rest(wo[k], wi), 1/sr, to sums[k]; the wo share the walk.
-  void add_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, std::span<Rgb> sums) const;
-  Rgb estimate_rest(const Vec3& wo, const Vec3& wi, Rng& rng) const;
+  // Adds one unbiased estimate of rest(wo[k], wi), 1/sr, to sums[k]; the wo share the walks.
+  void add_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, std::span<Rgb> sums,
+                Technique technique = Technique::unidirectional) const;
+  Rgb estimate_rest(const Vec3& wo, const Vec3& wi, Rng& rng,
+                    Technique technique = Technique::unidirectional) const;
 
-  // One walk that chooses like the film does; the throughput is the walk's own, its mean at a given wi is
-  // f cos / pdf. Empty if lost in the microsurface.
+  // One walk (a single one) that chooses like the film does; the throughput is the walk's own, its mean at a
+  // given wi is f cos / pdf. Empty if lost in the microsurface.
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const;
 
-  // Unbiased estimate of the density of sample()'s non-Dirac outcomes at wi, 1/sr.
+  // Unbiased estimate of the density of sample()'s non-Dirac outcomes at wi, 1/sr, from one walk.
   double estimate_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const;
 
- private:
-  void connect(const Vec3& m, const Rgb& throughput, std::span<const Vec3> wo, Rng& rng,
-               std::span<Rgb> sums) const;
-  void connect_own(const Vec3& m, const Rgb& throughput, double density, std::span<const Vec3> wo,
-                   std::span<Rgb> sums) const;
-  bool next_visit(Vec3& m, Rgb& throughput, double& roulette, Rng& rng, std::span<const Vec3> wo,
-                  std::span<Rgb> sums) const;
-  double connect_density(double cos_in, const Vec3& wi, Rng& rng) const;
+  // Density of choosing the first surface and going to wi, 1/sr. Exact; 0 for a smooth film.
+  double first_pdf(const Vec3& wo, const Vec3& wi) const;
 
-  FilmInterface film_;
-  PigmentedBase base_;
-  double radiance_scale_;
-  double brightest_albedo_;
+  // The chance that sample() chooses reflection at a facet met from outside at this cosine.
+  double reflect_chance(double cos_exterior) const;
+
+  // The share of wavelength k in choices and in colour: its absolute weights, normalised.
+  double importance(int k) const { return importance_[k]; }
+
+  // The same model at some of its wavelengths, their weights multiplied by `factor`.
+  struct Pick {
+    int wavelength;
+    double factor;
+  };
+  Pfmc at(std::span<const Pick> picks) const;
+
+ private:
+  using Powers = walk::Spectrum<double>;
+  double chance(const Powers& powers) const;
+  Rgb fold(const double* values) const;
+  Powers reflectances(const ThinFilm& film, double cosine) const;
+  std::optional<BsdfSample> sample_below(double cosine, Powers throughput, Rng& rng) const;
+  double leave_pdf(const Vec3& wi, Rng& rng, double& cosine) const;
+
+  walk::Layers layers_;
+  std::array<Rgb, kMostWavelengths> weight_;
+  std::array<double, kMostWavelengths> importance_;
+  Ggx ggx_;
+  const walk::Kernels* kernels_;
 };
 
 }  // namespace sunbeam

@@ -1,0 +1,136 @@
+// The Airy film of bake/optics/thin_film.h for a packet of directions at each of many wavelengths.
+//
+// With C^2, S^2 = cos^2, sin^2(k c1), both from cos(phi), phi = 2 k c1, the powers of one polarisation are
+//     R = [(q0 - q2)^2 C^2 + (b - d)^2 S^2 / c1^2] / D,   T = 4 q0 q2 / D,
+//     D =  (q0 + q2)^2 C^2 + (b + d)^2 S^2 / c1^2,
+// b = q0 q2 c1 / q1, d = q1 c1. All but phi is shared by the wavelengths. Where the wave is evanescent in the
+// film, C^2 and S^2 / c1^2 become 1 and tanh^2 / |c1|^2, and T is divided by cosh^2.
+#pragma once
+
+#include <array>
+
+#include "bake/live/packet.h"
+#include "bake/live/wavelengths.h"
+#include "bake/optics/thin_film.h"
+
+namespace sunbeam::walk {
+
+// k = 2 pi n1 d0 / lambda of each wavelength.
+struct FilmPhases {
+  std::array<double, kMostWavelengths> k{};
+  int count = 0;
+  bool is_bare = false;  // no film: k = 0 throughout
+  bool is_even = false;  // k[j] = k[0] + j step
+
+  double step() const { return k[1] - k[0]; }
+};
+
+template <class V>
+class FilmLanes {
+ public:
+  // At cosines `c0` in the film's exterior; those <= 0 reflect everything.
+  SUNBEAM_INLINE FilmLanes(const ThinFilm& film, const FilmPhases& phases, const V& c0) : phases_(phases) {
+    const double n0 = film.exterior_ior, n1 = film.film_ior, n2 = film.base_ior;
+    const V c2_squared = V((n2 - n0) * (n2 + n0) / square(n2)) + squared(c0) * V(square(n0 / n2));
+    const auto through = (c2_squared > V(0)) & (c0 > V(0));
+    through_ = select(through, V(1), V(0));
+    const V c2 = select(through, sqrt(max(c2_squared, V(0))), V(1));  // anything but 0 / 0
+    const V cosine = select(through, c0, V(1));
+    if (phases.is_bare) {
+      bare_polarisation(V(n0) * cosine, V(n2) * c2, s_);
+      bare_polarisation(cosine * V(1 / n0), c2 * V(1 / n2), p_);
+      return;
+    }
+    c1_squared_ = V((n1 - n0) * (n1 + n0) / square(n1)) + squared(cosine) * V(square(n0 / n1));
+    polarisation(V(n0) * cosine, V(n2) * c2, V(1 / n1), V(n1) * c1_squared_, s_);
+    polarisation(cosine * V(1 / n0), c2 * V(1 / n2), V(n1), c1_squared_ * V(1 / n1), p_);
+    const V tiny(1e-12);
+    may_be_evanescent_ = n1 < n0;
+    c1_ = sqrt(may_be_evanescent_ ? max(max(c1_squared_, -c1_squared_), tiny) : max(c1_squared_, tiny));
+    per_c1_squared_ = V(1) / squared(c1_);
+  }
+
+  // The refracted squared cosine is positive: light gets through.
+  SUNBEAM_INLINE V through() const { return through_; }
+
+  // Calls visit(j, reflectance) for each wavelength.
+  template <class F>
+  SUNBEAM_INLINE void reflectances(F visit) const {
+    each_phase(visit, [&](const V& c, const V& s, const V&) {
+      const V ds = s_.sum * c + s_.plus * s, dp = p_.sum * c + p_.plus * s;
+      const V ns = s_.difference * c + s_.minus * s, np = p_.difference * c + p_.minus * s;
+      return V(1) + through_ * (V(0.5) * (ns * dp + np * ds) / (ds * dp) - V(1));
+    });
+  }
+  template <class F>
+  SUNBEAM_INLINE void transmittances(F visit) const {
+    each_phase(visit, [&](const V& c, const V& s, const V& scale) {
+      const V ds = s_.sum * c + s_.plus * s, dp = p_.sum * c + p_.plus * s;
+      return through_ * scale * (s_.product * dp + p_.product * ds) / (ds * dp);
+    });
+  }
+
+ private:
+  struct Polarisation {
+    V sum, difference;  // (q0 +- q2)^2
+    V plus, minus;      // (b +- d)^2
+    V product;          // 2 q0 q2: half of 4 q0 q2
+  };
+
+  SUNBEAM_INLINE static void polarisation(const V& q0, const V& q2, const V& per_n, const V& d,
+                                          Polarisation& p) {
+    bare_polarisation(q0, q2, p);
+    const V b = q0 * q2 * per_n;
+    p.plus = squared(b + d);
+    p.minus = squared(b - d);
+  }
+  SUNBEAM_INLINE static void bare_polarisation(const V& q0, const V& q2, Polarisation& p) {
+    p = {squared(q0 + q2), squared(q0 - q2), V(0), V(0), V(2) * q0 * q2};
+  }
+
+  // visit(j, power(C^2, S^2 / c1^2, 1 / cosh^2)) for each wavelength.
+  template <class F, class Power>
+  SUNBEAM_INLINE void each_phase(F& visit, Power power) const {
+    const int count = phases_.count;
+    if (phases_.is_bare) {
+      const V same = power(V(1), V(0), V(1));
+      for (int j = 0; j < count; ++j) visit(j, same);
+    } else if (may_be_evanescent_) {
+      for (int j = 0; j < count; ++j) visit(j, evanescent(j, power));
+    } else if (!phases_.is_even) {
+      for (int j = 0; j < count; ++j) visit(j, wave(cos_of_phase(V(2 * phases_.k[j]) * c1_), power));
+    } else {
+      // cos((j + 1) x) = 2 cos(x) cos(j x) - cos((j - 1) x).
+      const V twice = V(2) * cos_of_phase(V(2 * phases_.step()) * c1_);
+      V previous = cos_of_phase(V(2 * (phases_.k[0] - phases_.step())) * c1_), current = cos_of_phase(V(2 * phases_.k[0]) * c1_);
+      for (int j = 0; j < count; ++j) {
+        visit(j, wave(current, power));
+        const V next = twice * current - previous;
+        previous = current;
+        current = next;
+      }
+    }
+  }
+
+  template <class Power>
+  SUNBEAM_INLINE V wave(const V& cosine, Power& power) const {
+    return power(V(0.5) + V(0.5) * cosine, (V(0.5) - V(0.5) * cosine) * per_c1_squared_, V(1));
+  }
+  template <class Power>
+  SUNBEAM_INLINE V evanescent(int j, Power& power) const {
+    const auto is_wave = c1_squared_ > V(0);
+    const V phase = V(2 * phases_.k[j]) * c1_;
+    const V cosine = cos_of_phase(select(is_wave, phase, V(0)));
+    const V e = exp_negative(-phase), tanh = (V(1) - e) / (V(1) + e);
+    return power(select(is_wave, V(0.5) + V(0.5) * cosine, V(1)),
+                 select(is_wave, V(0.5) - V(0.5) * cosine, squared(tanh)) * per_c1_squared_,
+                 select(is_wave, V(1), V(4) * e / squared(V(1) + e)));
+  }
+
+  const FilmPhases& phases_;
+  Polarisation s_, p_;
+  V through_, c1_squared_, c1_, per_c1_squared_;
+  bool may_be_evanescent_ = false;
+};
+
+}  // namespace sunbeam::walk

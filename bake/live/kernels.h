@@ -1,0 +1,25 @@
+// The walks compiled for each instruction set, and the choice of one for this machine.
+#pragma once
+
+#include "bake/live/layers.h"
+
+namespace sunbeam::walk {
+
+// Both add estimates of rest, 1/sr per wavelength, to sums (see walk.h, bidirectional.h); wi and wo are cosines.
+// Neither allocates memory. All instruction sets give the same bits.
+struct Kernels {
+  const char* name;
+  void (*unidirectional)(const Layers& layers, double wi, const double* wo, int exits, Rng& rng, double* sums);
+  void (*bidirectional)(const Layers& layers, double wi, double wo, Rng& rng, double* sums);
+};
+
+// What every machine of this kind of processor has (x86-64: SSE2; ARM: NEON).
+extern const Kernels kBaselineKernels;
+#ifdef SUNBEAM_AVX2_KERNELS
+extern const Kernels kAvx2Kernels;
+#endif
+
+// The fastest that this machine runs.
+const Kernels& best_kernels();
+
+}  // namespace sunbeam::walk

@@ -1,0 +1,7 @@
+#include "bake/live/make_kernels.h"
+
+namespace sunbeam::walk {
+
+const Kernels kAvx2Kernels{"avx2", unidirectional<xsimd::avx2>, bidirectional<xsimd::avx2>};
+
+}  // namespace sunbeam::walk

@@ -1,0 +1,57 @@
+// The layered material as the walks need it: numbers only, prepared once.
+#pragma once
+
+#include <array>
+
+#include "bake/live/film_lanes.h"
+#include "bake/live/guide.h"
+#include "bake/live/wavelengths.h"
+
+namespace sunbeam::walk {
+
+struct Layers {
+  Layers(const Material& material, const Wavelengths& wavelengths);  // 1 to kMostWavelengths of them
+
+  ThinFilm film;        // as seen from outside
+  ThinFilm film_below;  // as seen from below: reversed, or the same in "straight" mode
+  FilmPhases phases;    // of either
+  double alpha;         // 0: smooth
+  double index_ratio;   // n0 / n2 if passing light bends, else 1
+  bool bends;
+  bool straight;  // the passage has no shadowing
+
+  int count;                                        // of wavelengths
+  std::array<double, kMostWavelengths> albedo;      // of the base
+  std::array<double, kMostWavelengths> tau;         // optical depth of the pigment
+  double least_tau;
+  double brightest_albedo;
+  bool same_tau;  // at all wavelengths
+  bool product;   // exp(-tau / (cos_i cos_o)); else exp(-tau (1 / cos_i + 1 / cos_o))
+  double radiance_scale;
+
+  Guide guide;       // for walks that go on: towards what the film throws back and the pigment lets through
+  Guide open_guide;  // for walks that may leave: towards what the pigment lets through
+
+  // Keeps `picks` of the wavelengths: the k-th becomes what was number which(k).
+  template <class Which>
+  void pick(std::size_t picks, Which which) {
+    const Layers all(*this);
+    count = phases.count = static_cast<int>(picks);
+    phases.is_even = false;
+    for (std::size_t k = 0; k < picks; ++k) {
+      phases.k[k] = all.phases.k[which(k)];
+      albedo[k] = all.albedo[which(k)];
+      tau[k] = all.tau[which(k)];
+    }
+    summarise();
+  }
+
+  bool is_smooth() const { return alpha == 0; }
+  // Facets bend what passes, so that a given direction outside has a density of directions inside.
+  bool has_glossy_crossing() const { return alpha > 0 && bends; }
+
+ private:
+  void summarise();  // over wavelengths
+};
+
+}  // namespace sunbeam::walk

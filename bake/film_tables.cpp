@@ -15,7 +15,8 @@ constexpr std::size_t kNormalNodes = 48;  // quadrature over visible normals, ea
 Axis film_thickness_axis(const Recipe& recipe) {
   Axis axis = recipe.grid[0];
   const double span = axis.high() - axis.low();
-  const double phase = 4 * kPi * recipe.material.film_ior * span / kRgb3WavelengthsNm.b;
+  const auto nm = recipe.spectrum.wavelengths(recipe.material).nm;
+  const double phase = 4 * kPi * recipe.material.film_ior * span / *std::min_element(nm.begin(), nm.end());
   if (axis.size() > 1)
     axis.nodes =
         spaced_nodes(axis.low(), axis.high(), static_cast<std::size_t>(std::ceil(phase / kPhaseStep)) + 2);
@@ -39,7 +40,7 @@ Axis film_ior_axis(const Recipe& recipe) {
 std::vector<double> crossing_weights(const Material& material, const Axis& cosines) {
   Material clear = material;  // a film without interfaces, bending like the real one, passes everything
   clear.film_thickness_nm = 0;
-  const FilmInterface film(clear, kRgb3WavelengthsNm);
+  const FilmInterface film(clear, Rgb(550));  // the same at every wavelength
   const Ggx ggx(material.roughness);
   const std::size_t n = cosines.size();
   std::vector<double> weights(n * n);
@@ -88,11 +89,11 @@ void bake_film(const Recipe& recipe, Table& table) {
     const auto weights = material.is_smooth() ? std::vector<double>() : crossing_weights(material, cosine);
     for (std::size_t a = 0; a < thickness.size(); ++a) {
       material.film_thickness_nm = thickness.nodes[a];
-      const FilmInterface film(material, kRgb3WavelengthsNm);
+      const Pfmc model(material, recipe.spectrum.wavelengths(material));
       const std::size_t row = a * table.film_reflectance.stride(0) + b * table.film_reflectance.stride(1);
       for (std::size_t c = 0; c < kCosines; ++c)
         table.film_reflectance.set(row + c,
-                                   film.power(std::max(cosine.nodes[c], kSmallestCosine)).reflectance);
+                                   model.film_reflectance(std::max(cosine.nodes[c], kSmallestCosine)));
       if (material.is_smooth()) continue;
       for (std::size_t c = 0; c < kCosines; ++c)
         table.film_transmittance.set(

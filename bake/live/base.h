@@ -11,11 +11,14 @@ namespace sunbeam {
 
 class PigmentedBase {
  public:
-  explicit PigmentedBase(const Material& material) : material_(material) {}
+  explicit PigmentedBase(const Material& material, const Rgb& absorption = Rgb(1))
+      : material_(material), absorption_(absorption) {}
 
   // f1 in 1/sr, cosines > 0.
   Rgb value(double cos_i, double cos_o) const {
-    return material_.albedo * (kInvPi * std::exp(material_.absorption_exponent(cos_i, cos_o)));
+    const double exponent = material_.absorption_exponent(cos_i, cos_o);
+    return material_.albedo *
+           transform(absorption_, [&](double a) { return kInvPi * std::exp(a * exponent); });
   }
 
   struct Sample {
@@ -36,11 +39,12 @@ class PigmentedBase {
 
  private:
   double exponent(double cos_in) const {
-    const double tau = material_.optical_depth();
+    const double tau = material_.optical_depth() * std::min({absorption_.r, absorption_.g, absorption_.b});
     return 1 + (material_.absorption_path == AbsorptionPath::product ? tau / cos_in : tau);
   }
 
   Material material_;
+  Rgb absorption_;
 };
 
 }  // namespace sunbeam

@@ -8,7 +8,8 @@ namespace sunbeam {
 
 class LiveBsdf final : public Bsdf {
  public:
-  explicit LiveBsdf(const Material& material, const Rgb& wavelengths_nm = kRgb3WavelengthsNm);
+  explicit LiveBsdf(const Material& material) : LiveBsdf(material, Wavelengths::rgb3(material)) {}
+  LiveBsdf(const Material& material, Wavelengths wavelengths);
 
   Rgb eval(const Vec3& wo, const Vec3& wi, Rng& rng) const override;
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override { return pfmc_.sample(wo, rng); }
@@ -21,7 +22,9 @@ class LiveBsdf final : public Bsdf {
   double mis_pdf(const Vec3& wo, const Vec3& wi) const override;
 
  private:
-  double mean_transmittance(double cosine) const { return mean(pfmc_.film().power(cosine).transmittance); }
+  double mean_transmittance(double cosine) const {
+    return std::max(0.0, 1 - mean(pfmc_.film_reflectance(cosine)));
+  }
 
   Pfmc pfmc_;
   double transmitted_cosine_;  // Int T(w) cos(w) dw

@@ -15,9 +15,11 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "bake/live/base.h"
 #include "bake/live/film_interface.h"
+#include "bake/live/wavelengths.h"
 #include "sunbeam/bsdf.h"
 
 namespace sunbeam {
@@ -25,9 +27,10 @@ namespace sunbeam {
 // The paper's three wavelengths, taken as linear R, G, B.
 inline constexpr Rgb kRgb3WavelengthsNm{650, 510, 475};
 
-class Pfmc {
+// Three wavelengths.
+class PfmcOfThree {
  public:
-  explicit Pfmc(const Material& material, const Rgb& wavelengths_nm = kRgb3WavelengthsNm);
+  PfmcOfThree(const Material& material, const Rgb& wavelengths_nm, const Rgb& absorption);
 
   const FilmInterface& film() const { return film_; }
   const PigmentedBase& base() const { return base_; }
@@ -62,6 +65,38 @@ class Pfmc {
   PigmentedBase base_;
   double radiance_scale_;
   double brightest_albedo_;
+};
+
+// Any number of wavelengths, in groups of three that are walked one after the other; everything it returns is
+// folded linear RGB. Stands in for a walk that carries all of them.
+class Pfmc {
+ public:
+  explicit Pfmc(const Material& material) : Pfmc(material, Wavelengths::rgb3(material)) {}
+  Pfmc(const Material& material, Wavelengths wavelengths);
+
+  // First-surface value in 1/sr; 0 for a smooth film. Exact.
+  Rgb first(const Vec3& wo, const Vec3& wi) const;
+  double first_pdf(const Vec3& wo, const Vec3& wi) const;
+  // Weight of the mirror direction; 0 for a rough film. Exact.
+  Rgb dirac(const Vec3& wo) const { return smooth_ ? film_reflectance(wo.z) : Rgb(); }
+  Rgb film_reflectance(double cos_exterior) const;
+
+  void add_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, std::span<Rgb> sums) const;
+  Rgb estimate_rest(const Vec3& wo, const Vec3& wi, Rng& rng) const;
+  std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const;
+  double estimate_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const;
+
+ private:
+  struct Group {
+    PfmcOfThree walk;
+    Rgb weight[3];  // of each wavelength
+    Rgb fold(const Rgb& value) const {
+      return value.r * weight[0] + value.g * weight[1] + value.b * weight[2];
+    }
+  };
+
+  std::vector<Group> groups_;
+  bool smooth_;
 };
 
 }  // namespace sunbeam

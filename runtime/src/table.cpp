@@ -7,6 +7,15 @@ Rgb Table::transmittance(const std::array<double, 3>& x) const {
   return film_transmittance.interpolate(x);
 }
 
+bool Table::is_full_spectrum() const {
+  const auto at = info.find("spectrum");
+  return at != info.end() && at->second == "full";
+}
+
+ColorSpace Table::color_space() const {
+  return is_full_spectrum() ? color_space_from(info.at("color_space")) : ColorSpace::rec709;
+}
+
 bool Table::operator==(const Table& other) const {
   for (const auto& key : material_keys())
     if (get_text(material, key) != get_text(other.material, key)) return false;
@@ -15,21 +24,34 @@ bool Table::operator==(const Table& other) const {
          rest_stderr == other.rest_stderr && info == other.info;
 }
 
+namespace {
+
+// A folded transmittance as a factor that the remainder can be divided by.
+Rgb kept_positive(const Rgb& transmittance) {
+  constexpr double kSmallestShare = 0.05;  // of the mean
+  const double smallest = kSmallestShare * mean(transmittance);
+  return transform(transmittance, [&](double t) { return std::max(t, smallest); });
+}
+
+}  // namespace
+
 RestFrame::Terms RestFrame::terms(double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const {
   constexpr double kLargestDecay = 12;
   // Beyond the critical angle of a base thinner than the exterior nothing arrives; any finite frame will do.
   constexpr double kSmallestCosine = 1e-6;
   const double m_i = std::max(material_.cosine_below(cos_i), kSmallestCosine);
   const double m_o = std::max(material_.cosine_below(cos_o), kSmallestCosine);
-  return {scale_ * t_i * t_o, material_.albedo * (kInvPi * std::exp(material_.absorption_exponent(m_i, m_o))),
+  const Rgb front = is_folded_ ? kept_positive(t_i) * kept_positive(t_o) : t_i * t_o;
+  return {scale_ * front, material_.albedo * (kInvPi * std::exp(material_.absorption_exponent(m_i, m_o))),
           std::exp(-std::min(material_.optical_depth() * (1 / m_i + 1 / m_o), kLargestDecay))};
 }
 
 Rgb RestFrame::decode(const Rgb& remainder, double cos_i, double cos_o, const Rgb& t_i,
                       const Rgb& t_o) const {
   const Terms t = terms(cos_i, cos_o, t_i, t_o);
-  return transform(t.front * (t.first_visit + t.decay * remainder),
-                   [](double x) { return std::max(0.0, x); });
+  const Rgb rest = t.front * (t.first_visit + t.decay * remainder);
+  if (is_folded_) return rest;
+  return transform(rest, [](double x) { return std::max(0.0, x); });
 }
 
 Rgb RestFrame::encode(const Rgb& rest, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const {

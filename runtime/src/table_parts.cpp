@@ -89,6 +89,21 @@ void check_ranges(const Table& table) {
     throw Error("array 'film_transmittance' has other axes than 'film_reflectance'");
 }
 
+// What the colours are.
+void read_spectrum(const Attributes& attributes, Table& table) {
+  const std::string& spectrum = require(attributes, "spectrum");
+  if (spectrum != "rgb3" && spectrum != "full")
+    throw Error("attribute 'spectrum' is '" + spectrum + "'; allowed: rgb3, full");
+  if (spectrum == "rgb3") return;
+  for (const char* key : {"color_space", "illuminant", "wavelengths"})
+    table.info[key] = require(attributes, key);
+  try {
+    table.color_space();
+  } catch (const Error& error) {
+    throw Error(std::string("attribute 'color_space': ") + error.what());
+  }
+}
+
 Table build(const TableParts& parts) {
   const std::string& version = require(parts.attributes, "schema_version");
   if (version != std::to_string(kTableSchemaVersion))
@@ -110,6 +125,7 @@ Table build(const TableParts& parts) {
   if (require(parts.attributes, "content_hash") != parts_hash(parts))
     throw Error("content does not match its hash: the file is damaged");
   for (const char* key : kRequiredInfo) table.info[key] = require(parts.attributes, key);
+  read_spectrum(parts.attributes, table);
   for (const auto& [key, value] : parts.attributes)
     if (key.starts_with("error.")) table.info[key] = value;
   return table;

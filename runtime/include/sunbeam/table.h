@@ -20,6 +20,7 @@
 #include <string>
 
 #include "sunbeam/angles.h"
+#include "sunbeam/core/color_space.h"
 #include "sunbeam/material.h"
 #include "sunbeam/nd_array.h"
 
@@ -60,8 +61,14 @@ struct Table {
   NdArray rest_stderr;  // standard error of rest, 1/sr, same axes
 
   // Provenance and measured error as text: recipe, recipe_hash, seed, samples, estimator, spectrum,
-  // tool_version, encoding, error.<name>.
+  // tool_version, encoding, error.<name>; with spectrum "full" also color_space, illuminant, wavelengths.
   std::map<std::string, std::string> info;
+
+  // True if colours are spectra folded into color_space(), where components may be negative; else R, G, B are
+  // three wavelengths (spectrum "rgb3").
+  bool is_full_spectrum() const;
+  // Of all colours in the table, the albedo included. The three wavelengths of rgb3 are taken as rec709.
+  ColorSpace color_space() const;
 
   const Axis& parameter_axis(std::size_t k) const { return remainder.axes()[k]; }
 
@@ -74,7 +81,10 @@ struct Table {
 // The remainder's frame at one parameter point, shared by the bake (encode) and the look-up (decode).
 class RestFrame {
  public:
-  explicit RestFrame(const Material& material) : material_(material), scale_(material.radiance_scale()) {}
+  // `is_folded`: the colours are folded spectra (Table::is_full_spectrum), whose components may be negative
+  // and whose transmittance may pass through 0 in a channel where light still arrives.
+  explicit RestFrame(const Material& material, bool is_folded = false)
+      : material_(material), scale_(material.radiance_scale()), is_folded_(is_folded) {}
 
   Rgb decode(const Rgb& remainder, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
   Rgb encode(const Rgb& rest, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
@@ -89,6 +99,7 @@ class RestFrame {
 
   Material material_;
   double scale_;
+  bool is_folded_;
 };
 
 }  // namespace sunbeam

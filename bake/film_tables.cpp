@@ -10,6 +10,9 @@ constexpr double kPhaseStep = 0.15;  // rad of film phase between thickness node
 constexpr std::size_t kIorRefinement = 3;  // nodes per interval of the recipe's grid
 constexpr std::size_t kCosines = 65;
 constexpr double kSmallestCosine = 1e-8;  // the node at 0 holds the limit from above: 0 without interfaces
+// Nodes of F over the optical path, even in its cube root: linear to 1e-5 of a white base for |a| up to 4.
+constexpr std::size_t kPathNodes = 2048;
+constexpr double kLongestPath = 100;      // optical depths; F is constant beyond
 constexpr std::size_t kNormalNodes = 48;  // quadrature over visible normals, each way
 
 Axis film_thickness_axis(const Recipe& recipe) {
@@ -69,6 +72,19 @@ Rgb weighted_transmittance(const NdArray& reflectance, std::size_t first_cell,
   return sum;
 }
 
+NdArray first_visit(const Recipe& recipe) {
+  const Wavelengths w = recipe.spectrum.wavelengths(recipe.material);
+  const Axis path{"optical_path", "1", spaced_nodes(0, kLongestPath, kPathNodes, 3), 3};
+  NdArray result("first_visit", {path}, Precision::single_float);
+  for (std::size_t i = 0; i < kPathNodes; ++i) {
+    Rgb sum;
+    for (std::size_t k = 0; k < w.size(); ++k)
+      sum += w.weight[k] * (w.albedo[k] * std::exp(-w.absorption[k] * path.nodes[i]));
+    result.set(i, sum);
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<Axis> film_axes(const Recipe& recipe) {
@@ -79,6 +95,7 @@ std::vector<Axis> film_axes(const Recipe& recipe) {
 void bake_film(const Recipe& recipe, Table& table) {
   const auto axes = film_axes(recipe);
   const Axis &thickness = axes[0], &ior = axes[1], &cosine = axes[2];
+  if (recipe.spectrum.is_full()) table.first_visit = first_visit(recipe);
   table.film_reflectance = NdArray("film_reflectance", axes, Precision::single_float);
   if (!recipe.material.is_smooth())
     table.film_transmittance = NdArray("film_transmittance", axes, Precision::single_float);

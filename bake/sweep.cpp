@@ -123,7 +123,7 @@ class Sweep {
 
   void store(std::size_t node, const Parameters& parameters, const Material& material,
              const std::vector<Row>& rows) {
-    const RestFrame frame(material, recipe_.spectrum.is_full());
+    const RestFrame frame(material, table_.first_visit);
     const auto transmittance = [&](double cosine) {
       return table_.transmittance({parameters.film_thickness_nm, parameters.base_ior, cosine});
     };

@@ -41,7 +41,7 @@ CosineCurve sampled_curve(std::size_t nodes, F f) {
 TableBsdf::TableBsdf(const Table& table, const Parameters& parameters, OutsideGrid outside)
     : material_(checked(table, parameters, outside).applied_to(table.material)),
       symmetry_(table.symmetry),
-      frame_(material_, table.is_full_spectrum()),
+      frame_(material_, table.first_visit),
       ggx_(material_.roughness) {
   const auto point = Parameters::of(material_).values();
   remainder_ = table.remainder.slice(point);

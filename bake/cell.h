@@ -10,6 +10,11 @@ namespace sunbeam {
 inline constexpr double kDarkestAlbedo = 0.002;
 inline constexpr double kDarkestValue = kDarkestAlbedo * kInvPi;
 
+// Folded colours may have negative components.
+inline double mean_abs(const Rgb& a) {
+  return mean(transform(a, [](double x) { return std::abs(x); }));
+}
+
 class Cell {
  public:
   void add(const Rgb& estimate) {
@@ -26,7 +31,7 @@ class Cell {
 
   // The stop rule: mean over channels known to `noise` of its value, or of kDarkestValue.
   bool is_known(double noise, double walks) const {
-    return mean(standard_error(walks)) <= noise * std::max(mean(mean_of(walks)), kDarkestValue);
+    return mean(standard_error(walks)) <= noise * std::max(mean_abs(mean_of(walks)), kDarkestValue);
   }
 
  private:

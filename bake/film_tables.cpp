@@ -10,12 +10,16 @@ constexpr double kPhaseStep = 0.15;  // rad of film phase between thickness node
 constexpr std::size_t kIorRefinement = 3;  // nodes per interval of the recipe's grid
 constexpr std::size_t kCosines = 65;
 constexpr double kSmallestCosine = 1e-8;  // the node at 0 holds the limit from above: 0 without interfaces
+// Nodes of F over the optical path, even in its cube root: linear to 1e-5 of a white base for |a| up to 4.
+constexpr std::size_t kPathNodes = 2048;
+constexpr double kLongestPath = 100;      // optical depths; F is constant beyond
 constexpr std::size_t kNormalNodes = 48;  // quadrature over visible normals, each way
 
 Axis film_thickness_axis(const Recipe& recipe) {
   Axis axis = recipe.grid[0];
   const double span = axis.high() - axis.low();
-  const double phase = 4 * kPi * recipe.material.film_ior * span / kRgb3WavelengthsNm.b;
+  const auto nm = recipe.spectrum.wavelengths(recipe.material).nm;
+  const double phase = 4 * kPi * recipe.material.film_ior * span / *std::min_element(nm.begin(), nm.end());
   if (axis.size() > 1)
     axis.nodes =
         spaced_nodes(axis.low(), axis.high(), static_cast<std::size_t>(std::ceil(phase / kPhaseStep)) + 2);
@@ -39,7 +43,7 @@ Axis film_ior_axis(const Recipe& recipe) {
 std::vector<double> crossing_weights(const Material& material, const Axis& cosines) {
   Material clear = material;  // a film without interfaces, bending like the real one, passes everything
   clear.film_thickness_nm = 0;
-  const FilmInterface film(clear, kRgb3WavelengthsNm);
+  const FilmInterface film(clear, Rgb(550));  // the same at every wavelength
   const Ggx ggx(material.roughness);
   const std::size_t n = cosines.size();
   std::vector<double> weights(n * n);
@@ -68,6 +72,19 @@ Rgb weighted_transmittance(const NdArray& reflectance, std::size_t first_cell,
   return sum;
 }
 
+NdArray first_visit(const Recipe& recipe) {
+  const Wavelengths w = recipe.spectrum.wavelengths(recipe.material);
+  const Axis path{"optical_path", "1", spaced_nodes(0, kLongestPath, kPathNodes, 3), 3};
+  NdArray result("first_visit", {path}, Precision::single_float);
+  for (std::size_t i = 0; i < kPathNodes; ++i) {
+    Rgb sum;
+    for (std::size_t k = 0; k < w.size(); ++k)
+      sum += w.weight[k] * (w.albedo[k] * std::exp(-w.absorption[k] * path.nodes[i]));
+    result.set(i, sum);
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<Axis> film_axes(const Recipe& recipe) {
@@ -78,6 +95,7 @@ std::vector<Axis> film_axes(const Recipe& recipe) {
 void bake_film(const Recipe& recipe, Table& table) {
   const auto axes = film_axes(recipe);
   const Axis &thickness = axes[0], &ior = axes[1], &cosine = axes[2];
+  if (recipe.spectrum.is_full()) table.first_visit = first_visit(recipe);
   table.film_reflectance = NdArray("film_reflectance", axes, Precision::single_float);
   if (!recipe.material.is_smooth())
     table.film_transmittance = NdArray("film_transmittance", axes, Precision::single_float);
@@ -88,11 +106,11 @@ void bake_film(const Recipe& recipe, Table& table) {
     const auto weights = material.is_smooth() ? std::vector<double>() : crossing_weights(material, cosine);
     for (std::size_t a = 0; a < thickness.size(); ++a) {
       material.film_thickness_nm = thickness.nodes[a];
-      const FilmInterface film(material, kRgb3WavelengthsNm);
+      const Pfmc model(material, recipe.spectrum.wavelengths(material));
       const std::size_t row = a * table.film_reflectance.stride(0) + b * table.film_reflectance.stride(1);
       for (std::size_t c = 0; c < kCosines; ++c)
         table.film_reflectance.set(row + c,
-                                   film.power(std::max(cosine.nodes[c], kSmallestCosine)).reflectance);
+                                   model.film_reflectance(std::max(cosine.nodes[c], kSmallestCosine)));
       if (material.is_smooth()) continue;
       for (std::size_t c = 0; c < kCosines; ++c)
         table.film_transmittance.set(

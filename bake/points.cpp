@@ -10,7 +10,7 @@
 
 #include "bake/cell.h"
 #include "bake/csv.h"
-#include "bake/live/exact.h"
+#include "bake/exact_fold.h"
 #include "bake/live/pfmc.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/table_bsdf.h"
@@ -122,13 +122,14 @@ Estimate mean_of_walks(std::int64_t samples, Walk walk) {
 // The rows of a live recipe at one material, by PFMC or exactly.
 class LivePoint {
  public:
-  LivePoint(const Material& material, const Point& point, const PointsSettings& settings)
+  LivePoint(const Material& material, const Wavelengths& wavelengths, const Point& point,
+            const PointsSettings& settings)
       : point_(point),
         samples_(settings.samples),
-        model_(material, wavelengths()),
+        model_(material, wavelengths),
         rng_(settings.seed, point.stream) {
     if (settings.estimator == Estimator::exact && settings.quantity != Quantity::film)
-      exact_.emplace(material, wavelengths());
+      exact_.emplace(material, wavelengths);
   }
 
   Results brdf() {
@@ -145,11 +146,9 @@ class LivePoint {
     return {{"total", total.value}, {"stderr", total.standard_error}};
   }
 
-  Results film() const { return {{"reflectance", model_.film().power(point_.wi.z).reflectance}}; }
+  Results film() const { return {{"reflectance", model_.film_reflectance(point_.wi.z)}}; }
 
  private:
-  Rgb wavelengths() const { return point_.wavelength_nm ? Rgb(*point_.wavelength_nm) : kRgb3WavelengthsNm; }
-
   Estimate walked_rest() {
     return mean_of_walks(samples_, [&] { return model_.estimate_rest(point_.wo, point_.wi, rng_); });
   }
@@ -171,12 +170,13 @@ class LivePoint {
   Point point_;
   std::int64_t samples_;
   Pfmc model_;
-  std::optional<ExactRest> exact_;
+  std::optional<ExactFold> exact_;
   Rng rng_;
 };
 
-Results live_results(const Material& material, const Point& point, const PointsSettings& settings) {
-  LivePoint live(material, point, settings);
+Results live_results(const Material& material, const Wavelengths& wavelengths, const Point& point,
+                     const PointsSettings& settings) {
+  LivePoint live(material, wavelengths, point, settings);
   if (settings.quantity == Quantity::brdf) return live.brdf();
   return settings.quantity == Quantity::albedo ? live.albedo() : live.film();
 }
@@ -193,11 +193,11 @@ Results table_results(const TableBsdf& bsdf, const Point& point, Quantity quanti
 
 // The channel of an rgb3 table that holds this wavelength.
 int table_channel(const Csv& csv, const CsvRow& row, double wavelength_nm) {
-  for (int c = 0; c < 3; ++c)
-    if (kRgb3WavelengthsNm[c] == wavelength_nm) return c;
-  throw Error(fmt::format("{}:{}: column 'wavelength_nm': found {:g}; this table holds {:g}, {:g}, {:g}",
-                          csv.name, row.line, wavelength_nm, kRgb3WavelengthsNm.r, kRgb3WavelengthsNm.g,
-                          kRgb3WavelengthsNm.b));
+  const std::vector<double> nm = Wavelengths::rgb3({}).nm;
+  const auto at = std::find(nm.begin(), nm.end(), wavelength_nm);
+  if (at != nm.end()) return static_cast<int>(at - nm.begin());
+  throw Error(fmt::format("{}:{}: column 'wavelength_nm': found {:g}; this table holds {:g}", csv.name,
+                          row.line, wavelength_nm, fmt::join(nm, ", ")));
 }
 
 void append(std::string& line, const Results& results, std::optional<int> channel) {
@@ -229,6 +229,35 @@ void print_rows(const Csv& csv, const PointReader& reader, Quantity quantity, st
 }
 
 using RowAndChannel = std::pair<Results, std::optional<int>>;
+
+// Material and wavelengths of the rows of a live recipe.
+class LiveRows {
+ public:
+  LiveRows(const Material& material, const Spectrum& spectrum, const Csv& csv, const PointReader& reader)
+      : material_(material), spectrum_(spectrum), csv_(csv), reader_(reader) {}
+
+  Material material(std::size_t k) const {
+    Material row = reader_.material(k, material_);
+    if (csv_.column("albedo")) row.albedo = spectrum_.from_rec709(row.albedo);
+    return row;
+  }
+
+  Wavelengths wavelengths(std::size_t k) const {
+    const auto nm = reader_.point(k).wavelength_nm;
+    const Material row = material(k);
+    try {
+      return nm ? spectrum_.monochromatic(row, *nm) : spectrum_.wavelengths(row);
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}:{}: {}", csv_.name, csv_.rows[k].line, error.what()));
+    }
+  }
+
+ private:
+  const Material& material_;
+  const Spectrum& spectrum_;
+  const Csv& csv_;
+  const PointReader& reader_;
+};
 
 // Rows of a table. Binding it to parameters costs far more than a look-up, and rows mostly share theirs.
 class TableRows {
@@ -263,14 +292,15 @@ class TableRows {
 
 }  // namespace
 
-void evaluate_points_live(const Material& material, std::istream& in, const std::string& name,
-                          const PointsSettings& settings, std::ostream& out) {
+void evaluate_points_live(const Material& material, const Spectrum& spectrum, std::istream& in,
+                          const std::string& name, const PointsSettings& settings, std::ostream& out) {
   const Csv csv = read_csv(in, name);
   const PointReader reader(csv, settings.quantity);
-  for (std::size_t k = 0; k < csv.rows.size(); ++k) reader.point(k), reader.material(k, material);
+  const LiveRows rows(material, spectrum, csv, reader);
+  for (std::size_t k = 0; k < csv.rows.size(); ++k) rows.wavelengths(k);
   print_rows(csv, reader, settings.quantity, out, [&](std::size_t k) -> RowAndChannel {
     const Point point = reader.point(k);
-    return {live_results(reader.material(k, material), point, settings),
+    return {live_results(rows.material(k), rows.wavelengths(k), point, settings),
             point.wavelength_nm ? std::optional(0) : std::nullopt};
   });
 }
@@ -283,6 +313,10 @@ void evaluate_points_table(const Table& table, std::istream& in, const std::stri
     if (std::find(kParameterNames.begin(), kParameterNames.end(), csv.header[k]) == kParameterNames.end())
       throw Error(fmt::format("{}: column '{}' is fixed in a table; a table's row may set {}", name,
                               csv.header[k], fmt::join(kParameterNames, ", ")));
+  if (reader.is_monochromatic() && table.is_full_spectrum())
+    throw Error(name +
+                ": column 'wavelength_nm': the table's spectrum is \"full\", so it holds folded colours, no "
+                "wavelengths; evaluate its recipe instead");
   print_rows(csv, reader, settings.quantity, out, TableRows(table, csv, reader, settings.quantity));
 }
 

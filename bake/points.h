@@ -1,9 +1,10 @@
 // Evaluates a live recipe or a table at the rows of a CSV file.
 //
-// Columns: any material key overrides the recipe (a table: only its three parameters), wavelength_nm makes
-// the row monochromatic, theta_i_deg, theta_o_deg in [0, 90), phi_deg = azimuth between wi and wo (mirror:
-// 180). Other columns are carried through. Results are appended as columns, suffixed _r _g _b unless
-// monochromatic:
+// Columns: any material key overrides the recipe (a table: only its three parameters; an albedo is linear
+// Rec.709, as in a recipe), wavelength_nm makes the row monochromatic (a table: one of the three of rgb3;
+// refused in mode full, which holds folded colours), theta_i_deg, theta_o_deg in [0, 90), phi_deg = azimuth
+// between wi and wo (mirror: 180). Other columns are carried through. Results are appended as columns,
+// suffixed _r _g _b (in the colour space of the recipe or table) unless monochromatic:
 //   brdf    first, rest, stderr (of rest), pdf (one number), dirac
 //   albedo  total (Dirac included), stderr
 //   film    reflectance (at theta_i_deg, from outside)
@@ -14,6 +15,7 @@
 #include <string>
 
 #include "bake/estimator.h"
+#include "bake/live/spectrum.h"
 #include "sunbeam/material.h"
 #include "sunbeam/table.h"
 
@@ -29,8 +31,8 @@ struct PointsSettings {
 };
 
 // `name` is the CSV's, for messages. Throws Error before anything is written if a row is bad.
-void evaluate_points_live(const Material& material, std::istream& csv, const std::string& name,
-                          const PointsSettings& settings, std::ostream& out);
+void evaluate_points_live(const Material& material, const Spectrum& spectrum, std::istream& csv,
+                          const std::string& name, const PointsSettings& settings, std::ostream& out);
 void evaluate_points_table(const Table& table, std::istream& csv, const std::string& name,
                            const PointsSettings& settings, std::ostream& out);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runtime/config/config.h"
+#include "sunbeam/core/error.h"
 #include "sunbeam/core/file.h"
 #include "sunbeam/core/hash.h"
 #include "sunbeam/table.h"
@@ -40,6 +41,7 @@ double read_roughness(const ConfigTable& config, double fallback) {
   return value;
 }
 
+// All but the albedo, which waits for the spectrum.
 Material read_material(const ConfigTable& config) {
   Material m;
   m.transmission = static_cast<Transmission>(config.choice("transmission", {"straight", "refract"}, 1));
@@ -54,7 +56,6 @@ Material read_material(const ConfigTable& config) {
   number("absorption_per_nm", m.absorption_per_nm);
   number("pigment_thickness_nm", m.pigment_thickness_nm);
   m.roughness = read_roughness(config, m.roughness);
-  m.albedo = config.rgb("albedo", {0, 1}, m.albedo);
   return m;
 }
 
@@ -105,6 +106,72 @@ std::vector<Axis> read_grid(const ConfigTable& grid, const Material& material) {
   return axes;
 }
 
+// The thickest film of the recipe has to be resolved by kMostWavelengths wavelengths.
+double longest_path(const ConfigTable& grid_config, const ConfigTable& material_config,
+                    const std::vector<Axis>& grid, const Material& material) {
+  const double in_grid = grid[0].high();
+  const double thickest = std::max(in_grid, material.film_thickness_nm);
+  const double path = 2 * material.film_ior * thickest, longest = resolved_path_nm(kMostWavelengths);
+  if (path > longest)
+    (thickest == in_grid && grid_config.has(kParameterNames[0]) ? grid_config : material_config)
+        .fail(kParameterNames[0],
+              fmt::format("found {:g}; allowed with spectrum.mode \"full\" and film_ior {:g}: up to {:g}",
+                          thickest, material.film_ior, std::floor(longest / (2 * material.film_ior))));
+  return path;
+}
+
+constexpr const char* kAbsorptionSpectrum = "absorption_spectrum";
+constexpr Range kWavelengthNm{1, 1e6};
+
+AbsorptionShape read_absorption_shape(const ConfigTable& material) {
+  if (!material.is_list(kAbsorptionSpectrum)) {
+    const std::vector<std::string> names{"flat", "eumelanin", "pheomelanin"};
+    const int choice = material.choice(kAbsorptionSpectrum, names, 0);
+    return choice == 0 ? AbsorptionShape::flat() : AbsorptionShape::pigment(names[choice]);
+  }
+  const auto points = material.curve(kAbsorptionSpectrum, kWavelengthNm, {0, 1e9});
+  try {
+    return AbsorptionShape::table(points);
+  } catch (const Error& error) {
+    material.fail(kAbsorptionSpectrum, error.what());
+  }
+}
+
+void refuse_outside_full(const ConfigTable& config, const char* key) {
+  if (config.has(key)) config.fail(key, "found, but spectrum.mode is \"rgb3\"; allowed with \"full\" only");
+}
+
+Spectrum read_spectrum(const ConfigTable& config, const ConfigTable& material, const ConfigTable& grid,
+                       const Recipe& recipe) {
+  if (config.choice("mode", {"rgb3", "full"}, 0) == 0) {
+    for (const char* key : {"illuminant", "color_space"}) refuse_outside_full(config, key);
+    refuse_outside_full(material, kAbsorptionSpectrum);
+    return Spectrum();
+  }
+  const auto illuminant = config.choice("illuminant", {"D65", "E"}, 0) == 0 ? Illuminant::d65 : Illuminant::e;
+  const auto space =
+      config.choice("color_space", {"acescg", "rec709"}, 0) == 0 ? ColorSpace::acescg : ColorSpace::rec709;
+  return Spectrum(illuminant, space, longest_path(grid, material, recipe.grid, recipe.material),
+                  read_absorption_shape(material));
+}
+
+// Reads the albedo into spectrum and material.
+void read_albedo(const ConfigTable& config, Spectrum& spectrum, Material& material) {
+  constexpr const char* kAlbedo = "albedo";
+  if (config.is_list_of_lists(kAlbedo)) {
+    if (!spectrum.is_full()) refuse_outside_full(config, kAlbedo);
+    material.albedo = spectrum.set_albedo(config.curve(kAlbedo, kWavelengthNm, {0, 1}));
+    return;
+  }
+  material.albedo = spectrum.from_rec709(config.rgb(kAlbedo, {0, 1}, material.albedo));
+  if (!spectrum.is_full()) return;
+  try {
+    spectrum.set_albedo(material.albedo);
+  } catch (const Error& error) {
+    config.fail(kAlbedo, fmt::format("in {}: {}", to_string(spectrum.color_space()), error.what()));
+  }
+}
+
 }  // namespace
 
 Recipe parse_recipe(const std::string& text, const std::string& name,
@@ -112,8 +179,11 @@ Recipe parse_recipe(const std::string& text, const std::string& name,
   const ConfigTable config = ConfigTable::parse(text, name, overrides);
   Recipe recipe;
   recipe.name = name;
-  recipe.material = read_material(config.table("material"));
-  recipe.grid = read_grid(config.table("grid"), recipe.material);
+  const ConfigTable material = config.table("material"), grid = config.table("grid");
+  recipe.material = read_material(material);
+  recipe.grid = read_grid(grid, recipe.material);
+  recipe.spectrum = read_spectrum(config.table("spectrum"), material, grid, recipe);
+  read_albedo(material, recipe.spectrum, recipe.material);
 
   const ConfigTable table = config.table("table");
   recipe.table.angles = table.integer("angles", 2, 512, recipe.table.angles);
@@ -127,7 +197,6 @@ Recipe parse_recipe(const std::string& text, const std::string& name,
       accuracy.number("tolerance_median", {1e-6, 10}, recipe.accuracy.tolerance_median);
   recipe.accuracy.tolerance_p99 = accuracy.number("tolerance_p99", {1e-6, 10}, recipe.accuracy.tolerance_p99);
 
-  config.table("spectrum").choice("mode", {"rgb3"}, 0);
   config.finish();
   recipe.text = config.canonical_text();
   recipe.hash = content_hash(recipe.text);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/live/spectrum.h"
 #include "sunbeam/axis.h"
 #include "sunbeam/material.h"
 #include "sunbeam/nd_array.h"
@@ -12,7 +13,8 @@
 namespace sunbeam {
 
 struct Recipe {
-  Material material;       // [material]: fixed values, and defaults of the grid's parameters
+  Material
+      material;  // [material]: fixed values, and defaults of the grid's parameters; albedo as Spectrum has it
   std::vector<Axis> grid;  // [grid]: the three parameter axes in table order; one node if not swept
 
   struct {
@@ -28,7 +30,7 @@ struct Recipe {
     double tolerance_p99 = 0.05;
   } accuracy;
 
-  std::string spectrum = "rgb3";
+  Spectrum spectrum;  // [spectrum], with albedo and absorption_spectrum of [material]
 
   std::string name;  // file name, for messages
   std::string text;  // canonical TOML with overrides applied

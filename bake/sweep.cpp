@@ -100,9 +100,9 @@ class Sweep {
                    {"seed", std::to_string(settings_.seed)},
                    {"samples", std::to_string(walks_.load())},
                    {"estimator", name_of(Estimator::pfmc)},
-                   {"spectrum", recipe_.spectrum},
                    {"tool_version", kToolVersion},
                    {"encoding", recipe_.table.encoding}};
+    table_.info.merge(recipe_.spectrum.attributes());
     return std::move(table_);
   }
 
@@ -110,7 +110,7 @@ class Sweep {
   void bake_node(std::size_t node) {
     const Parameters parameters = parameters_at(recipe_.grid, node);
     const Material material = parameters.applied_to(recipe_.material);
-    const Pfmc model(material);
+    const Pfmc model(material, recipe_.spectrum.wavelengths(material));
     std::vector<Row> rows;
     for (std::size_t i = 0; i < wi_.size(); ++i) {
       rows.push_back(
@@ -123,7 +123,7 @@ class Sweep {
 
   void store(std::size_t node, const Parameters& parameters, const Material& material,
              const std::vector<Row>& rows) {
-    const RestFrame frame(material);
+    const RestFrame frame(material, table_.first_visit);
     const auto transmittance = [&](double cosine) {
       return table_.transmittance({parameters.film_thickness_nm, parameters.base_ior, cosine});
     };

@@ -3,9 +3,10 @@
 #include <optional>
 
 #include "bake/cell.h"
-#include "bake/live/exact.h"
+#include "bake/exact_fold.h"
 #include "bake/live/pfmc.h"
 #include "bake/parallel_tasks.h"
+#include "bake/recipe.h"
 #include "sunbeam/table_bsdf.h"
 
 namespace sunbeam {
@@ -62,27 +63,25 @@ WalkedRest walk_rest(const Pfmc& model, const Vec3& wi, const std::vector<Vec3>&
   return rest;
 }
 
-double mean_abs(const Rgb& a) {
-  return mean(transform(a, [](double x) { return std::abs(x); }));
-}
-
 class PointCheck {
  public:
-  PointCheck(const Table& table, const VerifySettings& settings, std::uint64_t index)
+  PointCheck(const Table& table, const Spectrum& spectrum, const VerifySettings& settings,
+             std::uint64_t index)
       : settings_(settings), rng_(settings.seed, index) {
     point_.parameters = {draw(table.parameter_axis(0), rng_), draw(table.parameter_axis(1), rng_),
                          draw(table.parameter_axis(2), rng_)};
     point_.cos_i = lerp(rng_.uniform(), std::cos(89 * kPi / 180), 1);
     wi_ = direction_from_cosine(point_.cos_i, 0);
     bsdf_.emplace(table, point_.parameters, OutsideGrid::refuse);
-    model_.emplace(point_.parameters.applied_to(table.material));
+    wavelengths_ = spectrum.wavelengths(bsdf_->material());
+    model_.emplace(bsdf_->material(), wavelengths_);
   }
 
   VerifyPoint run() {
     directions_ = draw_directions(*bsdf_, wi_, rng_);
     measure_errors(settings_.truth == Estimator::exact ? exact_rest() : walked_rest());
     point_.dirac_error =
-        max_component(transform(bsdf_->film_reflectance(wi_.z) - model_->film().power(wi_.z).reflectance,
+        max_component(transform(bsdf_->film_reflectance(wi_.z) - model_->film_reflectance(wi_.z),
                                 [](double x) { return std::abs(x); }));
     point_.albedo = max_component(bsdf_->albedo(wi_));
     return point_;
@@ -105,7 +104,7 @@ class PointCheck {
   }
 
   std::vector<Rgb> exact_rest() const {
-    const ExactRest exact(bsdf_->material());
+    const ExactFold exact(bsdf_->material(), wavelengths_);
     std::vector<Rgb> live;
     for (const Vec3& wo : directions_.wo) live.push_back(exact.rest(wo, wi_));
     return live;
@@ -121,7 +120,7 @@ class PointCheck {
   double denominator(const std::vector<Rgb>& live) const {
     double total = 0;
     for (std::size_t k = 0; k < live.size(); ++k)
-      total += directions_.weight[k] * mean(model_->first(directions_.wo[k], wi_) + live[k]);
+      total += directions_.weight[k] * mean_abs(model_->first(directions_.wo[k], wi_) + live[k]);
     return std::max(total, kDarkestAlbedo);
   }
 
@@ -133,7 +132,7 @@ class PointCheck {
       const Rgb first_difference = bsdf_->first(wo, wi_) - model_->first(wo, wi_);
       all += directions_.weight[k] * mean_abs(first_difference + rest_difference);
       rest += directions_.weight[k] * mean_abs(rest_difference);
-      rest_total += directions_.weight[k] * mean(live[k]);
+      rest_total += directions_.weight[k] * mean_abs(live[k]);
       check_reciprocity(wo);
     }
     point_.error = all / denominator(live);
@@ -143,7 +142,7 @@ class PointCheck {
   void check_reciprocity(const Vec3& wo) {
     const Rgb forward = bsdf_->eval(wo, wi_, rng_), backward = bsdf_->eval(wi_, wo, rng_);
     for (int c = 0; c < 3; ++c) {
-      const double scale = std::max({forward[c], backward[c], kDarkestValue});
+      const double scale = std::max({std::abs(forward[c]), std::abs(backward[c]), kDarkestValue});
       point_.reciprocity = std::max(point_.reciprocity, std::abs(forward[c] - backward[c]) / scale);
     }
   }
@@ -153,6 +152,7 @@ class PointCheck {
   VerifyPoint point_;
   Vec3 wi_;
   std::optional<TableBsdf> bsdf_;
+  Wavelengths wavelengths_;
   std::optional<Pfmc> model_;
   Directions directions_;
 };
@@ -175,11 +175,13 @@ Quantiles quantiles(const std::vector<VerifyPoint>& points, Member member) {
 }  // namespace
 
 VerifyReport verify(const Table& table, const VerifySettings& settings) {
+  const Spectrum spectrum = parse_recipe(table.info.at("recipe"), "recipe of the table").spectrum;
   VerifyReport report;
   report.truth = name_of(settings.truth);
   report.points.resize(static_cast<std::size_t>(settings.points));
-  run_parallel_tasks(report.points.size(), settings.threads, settings.on_progress,
-                     [&](std::size_t k) { report.points[k] = PointCheck(table, settings, k).run(); });
+  run_parallel_tasks(report.points.size(), settings.threads, settings.on_progress, [&](std::size_t k) {
+    report.points[k] = PointCheck(table, spectrum, settings, k).run();
+  });
   report.error = quantiles(report.points, &VerifyPoint::error);
   report.rest_error = quantiles(report.points, &VerifyPoint::rest_error);
   report.noise_floor = quantiles(report.points, &VerifyPoint::noise_floor);

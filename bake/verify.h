@@ -2,10 +2,10 @@
 //
 // Point k draws its own parameters (uniform over each axis' physical range) and wi (uniform in cosine, theta
 // <= 89 degrees) from random stream k. Its error is
-//     Int |f_table - f_live| cos_o dwo / max(Int f_live cos_o dwo, 0.002),   f = first (non-Dirac) + rest,
-// mean over channels, by importance sampling with the table's own density. The live values are
-// noisy, which biases an L1 error upwards; noise_floor is the same figure with the table replaced by a
-// second, independent live run of equal cost. Each point spends walks until it may expect a floor of a
+//     Int |f_table - f_live| cos_o dwo / max(Int |f_live| cos_o dwo, 0.002),   f = first (non-Dirac) + rest,
+// mean over channels of the folded colour, by importance sampling with the table's own density. The live
+// values are noisy, which biases an L1 error upwards; noise_floor is the same figure with the table replaced
+// by a second, independent live run of equal cost. Each point spends walks until it may expect a floor of a
 // third of the median tolerance.
 #pragma once
 
@@ -36,7 +36,7 @@ struct VerifyPoint {
   double noise_floor = 0;
   double dirac_error = 0;  // |R_table - R|, largest channel
   double albedo = 0;       // of the table, Dirac included, largest channel
-  double reciprocity = 0;  // max |f(i,o) - f(o,i)| / max(f(i,o), f(o,i), 0.002/pi)
+  double reciprocity = 0;  // max |f(i,o) - f(o,i)| / max(|f(i,o)|, |f(o,i)|, 0.002/pi)
 };
 
 struct Quantiles {
@@ -50,6 +50,7 @@ struct VerifyReport {
   std::string truth;  // the estimator the table was held against
 };
 
+// Throws Error if the recipe in the table cannot be read.
 VerifyReport verify(const Table& table, const VerifySettings& settings);
 
 // True if median and p99 of the error are within the tolerances.

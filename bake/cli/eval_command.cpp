@@ -21,8 +21,8 @@ void evaluate(const EvalOptions& options, std::istream& csv, const std::string& 
   const PointsSettings settings{parse_quantity(options.quantity), options.samples, options.seed,
                                 estimator_of(options.estimator)};
   if (!is_table(options.source)) {
-    evaluate_points_live(load_recipe(options.source, options.overrides).material, csv, name, settings,
-                         std::cout);
+    const Recipe recipe = load_recipe(options.source, options.overrides);
+    evaluate_points_live(recipe.material, recipe.spectrum, csv, name, settings, std::cout);
     return;
   }
   if (!options.overrides.empty()) throw Error(options.source + ": --set changes a recipe, not a table");

@@ -26,7 +26,14 @@ Json describe(const Table& table, const std::string& path) {
     json["axes"].push_back({{"name", axis.name}, {"unit", axis.unit}, {"nodes", axis.nodes}});
   for (const char* key : {"recipe", "recipe_hash"}) json[key] = table.info.at(key);
   for (const char* key : {"seed", "samples"}) json[key] = std::stoull(table.info.at(key));
-  for (const char* key : {"estimator", "spectrum", "tool_version"}) json[key] = table.info.at(key);
+  for (const char* key : {"estimator", "spectrum"}) json[key] = table.info.at(key);
+  json["color_space"] = to_string(table.color_space());
+  if (table.is_full_spectrum()) {
+    json["illuminant"] = table.info.at("illuminant");
+    for (const auto& nm : split(table.info.at("wavelengths"), ' '))
+      json["wavelengths"].push_back(number_or_text(nm));
+  }
+  json["tool_version"] = table.info.at("tool_version");
   json["error"] = Json::object();
   for (const auto& [key, value] : table.info)
     if (key.starts_with("error.")) json["error"][key.substr(6)] = number_or_text(value);

@@ -14,6 +14,7 @@
 #include "runtime/tracer/image_io.h"
 #include "runtime/tracer/render.h"
 #include "runtime/tracer/scene.h"
+#include "sunbeam/color_converted_bsdf.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/file.h"
 #include "sunbeam/lambert.h"
@@ -67,6 +68,16 @@ std::unique_ptr<Bsdf> table_skin(const Table& table, const SceneMaterial& skin,
   }
 }
 
+std::unique_ptr<Bsdf> live_skin(const Recipe& recipe, const SceneMaterial& skin,
+                                const std::string& scene_path) {
+  const Material material = skin_material(skin, recipe.material);
+  try {
+    return std::make_unique<LiveBsdf>(material, recipe.spectrum.wavelengths(material));
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: material '{}': {}", scene_path, skin.name, error.what()));
+  }
+}
+
 // One BSDF for each material of the scene.
 class Materials {
  public:
@@ -82,10 +93,10 @@ class Materials {
         if (scene.recipe.empty())
           throw Error(scene_path + ": key 'recipe' is missing; --material live needs it");
         if (!recipe) recipe = load_recipe(scene.recipe);
-        add(std::make_unique<LiveBsdf>(skin_material(m, recipe->material)));
+        add_skin(live_skin(*recipe, m, scene_path), recipe->spectrum.color_space());
       } else {
         if (!table) table = load_scene_table(scene, scene_path);
-        add(table_skin(*table, m, scene_path));
+        add_skin(table_skin(*table, m, scene_path), table->color_space());
       }
     }
     if (table) table_hash_ = table->info.at("recipe_hash");
@@ -98,6 +109,13 @@ class Materials {
   void add(std::unique_ptr<Bsdf> bsdf) {
     pointers_.push_back(bsdf.get());
     owned_.push_back(std::move(bsdf));
+  }
+
+  // The tracer works in linear Rec.709.
+  void add_skin(std::unique_ptr<Bsdf> bsdf, ColorSpace space) {
+    if (space != ColorSpace::rec709)
+      bsdf = std::make_unique<ColorConvertedBsdf>(std::move(bsdf), space, ColorSpace::rec709);
+    add(std::move(bsdf));
   }
 
   std::vector<std::unique_ptr<Bsdf>> owned_;
@@ -116,6 +134,18 @@ std::string stats_json(const RenderStats& s) {
   json["peak_rss_mb"] = s.peak_rss_mb;
   json["bad_samples"] = s.bad_samples;
   return json.dump(2) + "\n";
+}
+
+// Says how much light the PNG shows that is not there, if it is more than rounding to bytes could hide.
+void report_clipping(const std::string& png, const ClipAccount& account) {
+  constexpr double kNegligible = 1e-4;
+  if (account.luminance_added <= kNegligible * std::abs(account.luminance)) return;
+  fmt::print(stderr,
+             "{}: {} of {} pixels lie outside Rec.709 (lowest component {:.3g}); raising them to 0 added "
+             "{:.2g} % of "
+             "luminance. The .exr keeps their sign.\n",
+             png, account.clipped, account.colors, account.lowest,
+             100 * account.luminance_added / std::abs(account.luminance));
 }
 
 }  // namespace
@@ -150,7 +180,7 @@ int run_render(const RenderOptions& options) {
                               {"sunbeam.recipe_hash", materials.table_hash()},
                               {"sunbeam.seed", std::to_string(options.seed)},
                               {"sunbeam.tool_version", kToolVersion}}});
-  write_png(png, result.mean);
+  report_clipping(png, write_png(png, result.mean));
   if (!options.stats.empty()) write_file_atomically(options.stats, stats_json(result.stats));
   if (result.stats.bad_samples > 0)
     fmt::print(stderr, "warning: {} samples were not finite and count as black\n", result.stats.bad_samples);

@@ -6,11 +6,18 @@
 // and D65 the straight line on which its standard is built.
 #pragma once
 
+#include <string_view>
+
 #include "sunbeam/core/vec.h"
 
 namespace sunbeam {
 
 enum class Illuminant { d65, e };
+
+// As recipes and tables spell it: "D65", "E".
+constexpr std::string_view to_string(Illuminant illuminant) {
+  return illuminant == Illuminant::e ? "E" : "D65";
+}
 
 inline constexpr double kShortestVisibleNm = 380;
 inline constexpr double kLongestVisibleNm = 780;

@@ -82,17 +82,17 @@ bool solve_uplift(const WavelengthQuadrature& q, const Rgb& target, Uplift& stat
   return false;
 }
 
-double interpolate(const std::vector<std::pair<double, double>>& points, double x) {
-  if (x <= points.front().first) return points.front().second;
-  if (x >= points.back().first) return points.back().second;
-  std::size_t i = 1;
-  while (points[i].first < x) ++i;
-  const auto [x0, y0] = points[i - 1];
-  const auto [x1, y1] = points[i];
-  return lerp((x - x0) / (x1 - x0), y0, y1);
-}
-
 }  // namespace
+
+double interpolate(const SpectralCurve& curve, double wavelength_nm) {
+  if (wavelength_nm <= curve.front().first) return curve.front().second;
+  if (wavelength_nm >= curve.back().first) return curve.back().second;
+  std::size_t i = 1;
+  while (curve[i].first < wavelength_nm) ++i;
+  const auto [x0, y0] = curve[i - 1];
+  const auto [x1, y1] = curve[i];
+  return lerp((wavelength_nm - x0) / (x1 - x0), y0, y1);
+}
 
 std::vector<double> uplift_albedo(const WavelengthQuadrature& quadrature, const Rgb& albedo) {
   for (int c = 0; c < 3; ++c)
@@ -121,7 +121,7 @@ std::vector<double> uplift_albedo(const WavelengthQuadrature& quadrature, const 
   return state.spectrum();
 }
 
-AbsorptionShape AbsorptionShape::table(std::vector<std::pair<double, double>> points) {
+AbsorptionShape AbsorptionShape::table(SpectralCurve points) {
   if (points.empty()) throw Error("absorption spectrum: at least one (wavelength, value) pair is needed");
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto [wavelength, value] = points[i];

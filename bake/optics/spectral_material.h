@@ -9,6 +9,11 @@
 
 namespace sunbeam {
 
+// Pairs of wavelength in nm (ascending, at least one) and value, joined by straight lines, constant beyond
+// the first and last.
+using SpectralCurve = std::vector<std::pair<double, double>>;
+double interpolate(const SpectralCurve& curve, double wavelength_nm);
+
 // Reflectance in [0, 1] at the wavelengths of the quadrature (one row of wavelengths uniform in 1 / lambda or
 // in lambda) whose fold is `albedo`, a linear colour in [0, 1] of the quadrature's colour space, to 1e-9.
 //
@@ -28,9 +33,8 @@ class AbsorptionShape {
   // 1 at all wavelengths.
   static AbsorptionShape flat() { return AbsorptionShape({}, 0); }
 
-  // Pairs of wavelength in nm (ascending) and absorption in any unit (>= 0, positive at 510 nm), joined by
-  // straight lines and constant beyond the first and last.
-  static AbsorptionShape table(std::vector<std::pair<double, double>> points);
+  // Absorption in any unit, >= 0 and positive at 510 nm.
+  static AbsorptionShape table(SpectralCurve points);
 
   // (510 nm / lambda)^exponent:
   //   "eumelanin"    3.48: melanosomes of skin, S. L. Jacques, "Melanosome absorption coefficient", Oregon
@@ -42,10 +46,9 @@ class AbsorptionShape {
   double operator()(double wavelength_nm) const;
 
  private:
-  AbsorptionShape(std::vector<std::pair<double, double>> points, double exponent)
-      : points_(std::move(points)), exponent_(exponent) {}
+  AbsorptionShape(SpectralCurve points, double exponent) : points_(std::move(points)), exponent_(exponent) {}
 
-  std::vector<std::pair<double, double>> points_;  // empty: a power law
+  SpectralCurve points_;  // empty: a power law
   double exponent_;
 };
 

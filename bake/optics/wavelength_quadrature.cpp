@@ -80,7 +80,7 @@ FilmPower WavelengthQuadrature::fold_film(const ThinFilm& film, double cos_exter
 }
 
 WavelengthQuadrature brute_force(Illuminant illuminant, ColorSpace space) {
-  const ColorMatrix to_rgb = xyz_to_rgb(illuminant, space);
+  const ColorMatrix to_rgb = xyz_to_rgb(illuminant_white(illuminant), space);
   WavelengthQuadrature q;
   for (double nm = kShortestVisibleNm; nm <= kLongestVisibleNm; ++nm) {
     const Vec3 rgb = to_rgb * (illuminant_power(illuminant, nm) * observer(nm));

@@ -7,8 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "bake/optics/color_space.h"
+#include "bake/optics/cie.h"
 #include "bake/optics/thin_film.h"
+#include "sunbeam/core/color_space.h"
 
 namespace sunbeam {
 

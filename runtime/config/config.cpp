@@ -137,6 +137,12 @@ bool ConfigTable::is_number(std::string_view key) const { return has(key) && nod
 bool ConfigTable::is_list(std::string_view key) const { return has(key) && node_->ask(key)->is_array(); }
 bool ConfigTable::is_table(std::string_view key) const { return has(key) && node_->ask(key)->is_table(); }
 
+bool ConfigTable::is_list_of_lists(std::string_view key) const {
+  if (!is_list(key)) return false;
+  const toml::array& list = *node_->ask(key)->as_array();
+  return !list.empty() && list[0].is_array();
+}
+
 double ConfigTable::number(std::string_view key, const Range& allowed, std::optional<double> fallback) const {
   const toml::node* node = node_->ask(key);
   if (!node && fallback) return *fallback;
@@ -195,6 +201,34 @@ std::vector<double> ConfigTable::numbers(std::string_view key, const Range& allo
                             describe(element), range_text(allowed)));
     result.push_back(*value);
   }
+  return result;
+}
+
+std::vector<std::pair<double, double>> ConfigTable::curve(std::string_view key, const Range& allowed_x,
+                                                          const Range& allowed_y) const {
+  const std::string allowed = fmt::format("allowed: at least two pairs [{}, {}], the first number ascending",
+                                          range_text(allowed_x), range_text(allowed_y));
+  const auto number_of = [](const toml::array& pair, std::size_t k, const Range& range) {
+    const auto value = pair[k].is_number() ? pair[k].value<double>() : std::nullopt;
+    return value && *value >= range.low && *value <= range.high ? value : std::nullopt;
+  };
+  const toml::node* node = node_->ask(key);
+  if (!node || !node->is_array())
+    fail(key, (node ? "found " + describe(*node) : "is missing") + "; " + allowed);
+  std::vector<std::pair<double, double>> result;
+  for (const auto& element : *node->as_array()) {
+    const toml::array* pair = element.as_array();
+    const bool is_pair = pair && pair->size() == 2;
+    const auto x = is_pair ? number_of(*pair, 0, allowed_x) : std::nullopt;
+    const auto y = is_pair ? number_of(*pair, 1, allowed_y) : std::nullopt;
+    if (!x || !y || (!result.empty() && *x <= result.back().first)) {
+      std::ostringstream found;
+      found << toml::node_view<const toml::node>(element);
+      fail(key, fmt::format("element {} is {}; {}", result.size() + 1, found.str(), allowed));
+    }
+    result.emplace_back(*x, *y);
+  }
+  if (result.size() < 2) fail(key, fmt::format("found {} pairs; {}", result.size(), allowed));
   return result;
 }
 

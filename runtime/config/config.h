@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "sunbeam/core/vec.h"
@@ -32,6 +33,7 @@ class ConfigTable {
   bool is_number(std::string_view key) const;
   bool is_list(std::string_view key) const;
   bool is_table(std::string_view key) const;
+  bool is_list_of_lists(std::string_view key) const;  // by its first element
 
   // Each throws Error when the key is missing and no fallback is given, or when type or range are wrong.
   double number(std::string_view key, const Range& allowed, std::optional<double> fallback = {}) const;
@@ -42,6 +44,9 @@ class ConfigTable {
   int choice(std::string_view key, const std::vector<std::string>& allowed,
              std::optional<int> fallback = {}) const;
   std::vector<double> numbers(std::string_view key, const Range& allowed) const;
+  // A list of at least two [x, y] with ascending x: a curve.
+  std::vector<std::pair<double, double>> curve(std::string_view key, const Range& allowed_x,
+                                               const Range& allowed_y) const;
   Vec3 vec3(std::string_view key, std::optional<Vec3> fallback = {}) const;
   // One number (grey) or a list of three.
   Rgb rgb(std::string_view key, const Range& allowed, std::optional<Rgb> fallback = {}) const;

@@ -7,36 +7,80 @@ Rgb Table::transmittance(const std::array<double, 3>& x) const {
   return film_transmittance.interpolate(x);
 }
 
+bool Table::is_full_spectrum() const {
+  const auto at = info.find("spectrum");
+  return at != info.end() && at->second == "full";
+}
+
+ColorSpace Table::color_space() const {
+  return is_full_spectrum() ? color_space_from(info.at("color_space")) : ColorSpace::rec709;
+}
+
 bool Table::operator==(const Table& other) const {
   for (const auto& key : material_keys())
     if (get_text(material, key) != get_text(other.material, key)) return false;
   return symmetry == other.symmetry && film_reflectance == other.film_reflectance &&
-         film_transmittance == other.film_transmittance && remainder == other.remainder &&
-         rest_stderr == other.rest_stderr && info == other.info;
+         film_transmittance == other.film_transmittance && first_visit == other.first_visit &&
+         remainder == other.remainder && rest_stderr == other.rest_stderr && info == other.info;
 }
 
+namespace {
+
+constexpr double kLargestDecay = 12;
+// Beyond the critical angle of a base thinner than the exterior nothing arrives; any finite frame will do.
+constexpr double kSmallestCosine = 1e-6;
+
+// A folded transmittance as a factor that the remainder can be divided by.
+Rgb kept_positive(const Rgb& transmittance) {
+  constexpr double kSmallestShare = 0.3;  // of the mean
+  const double smallest = kSmallestShare * mean(transmittance);
+  return transform(transmittance, [&](double t) { return std::max(t, smallest); });
+}
+
+// How far F has fallen from `start`, per channel. A channel that starts or ends near 0, or beyond, while
+// others have light stays within a factor of 10 of their mean, so that the remainder stays bounded.
+Rgb decay_of(const Rgb& start, const Rgb& value) {
+  constexpr double kMostRatio = 10;
+  const double of_mean = mean(start) > 0 ? std::max(mean(value) / mean(start), std::exp(-kLargestDecay)) : 1;
+  Rgb decay;
+  for (int c = 0; c < 3; ++c)
+    decay[c] =
+        start[c] > 0 ? std::clamp(value[c] / start[c], of_mean / kMostRatio, of_mean * kMostRatio) : of_mean;
+  return decay;
+}
+
+}  // namespace
+
 RestFrame::Terms RestFrame::terms(double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const {
-  constexpr double kLargestDecay = 12;
-  // Beyond the critical angle of a base thinner than the exterior nothing arrives; any finite frame will do.
-  constexpr double kSmallestCosine = 1e-6;
   const double m_i = std::max(material_.cosine_below(cos_i), kSmallestCosine);
   const double m_o = std::max(material_.cosine_below(cos_o), kSmallestCosine);
+  if (!first_visit_.empty()) return folded_terms(m_i, m_o, t_i, t_o);
   return {scale_ * t_i * t_o, material_.albedo * (kInvPi * std::exp(material_.absorption_exponent(m_i, m_o))),
-          std::exp(-std::min(material_.optical_depth() * (1 / m_i + 1 / m_o), kLargestDecay))};
+          Rgb(std::exp(-std::min(material_.optical_depth() * (1 / m_i + 1 / m_o), kLargestDecay)))};
+}
+
+RestFrame::Terms RestFrame::folded_terms(double m_i, double m_o, const Rgb& t_i, const Rgb& t_o) const {
+  const auto f = [&](double x) { return first_visit_.interpolate(std::array{x}); };
+  const Rgb first_visit = f(-material_.absorption_exponent(m_i, m_o));
+  const Rgb at_sum = material_.absorption_path == AbsorptionPath::sum
+                         ? first_visit
+                         : f(material_.optical_depth() * (1 / m_i + 1 / m_o));
+  return {scale_ * kept_positive(t_i) * kept_positive(t_o), kInvPi * first_visit, decay_of(f(0), at_sum)};
 }
 
 Rgb RestFrame::decode(const Rgb& remainder, double cos_i, double cos_o, const Rgb& t_i,
                       const Rgb& t_o) const {
   const Terms t = terms(cos_i, cos_o, t_i, t_o);
-  return transform(t.front * (t.first_visit + t.decay * remainder),
-                   [](double x) { return std::max(0.0, x); });
+  const Rgb rest = t.front * (t.first_visit + t.decay * remainder);
+  if (!first_visit_.empty()) return rest;
+  return transform(rest, [](double x) { return std::max(0.0, x); });
 }
 
 Rgb RestFrame::encode(const Rgb& rest, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const {
   const Terms t = terms(cos_i, cos_o, t_i, t_o);
   Rgb remainder;
   for (int c = 0; c < 3; ++c)
-    if (t.front[c] > 0) remainder[c] = (rest[c] / t.front[c] - t.first_visit[c]) / t.decay;
+    if (t.front[c] > 0) remainder[c] = (rest[c] / t.front[c] - t.first_visit[c]) / t.decay[c];
   return remainder;
 }
 

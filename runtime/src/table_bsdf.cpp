@@ -41,7 +41,7 @@ CosineCurve sampled_curve(std::size_t nodes, F f) {
 TableBsdf::TableBsdf(const Table& table, const Parameters& parameters, OutsideGrid outside)
     : material_(checked(table, parameters, outside).applied_to(table.material)),
       symmetry_(table.symmetry),
-      frame_(material_),
+      frame_(material_, table.first_visit),
       ggx_(material_.roughness) {
   const auto point = Parameters::of(material_).values();
   remainder_ = table.remainder.slice(point);
@@ -56,8 +56,8 @@ TableBsdf::TableBsdf(const Table& table, const Parameters& parameters, OutsideGr
   std::size_t node = 0;
   first_chance_ = sampled_curve(kSamplingNodes, [&](double c) {
     const Vec3 wo = direction_from_cosine(std::max(c, kSmallestCosine), 0);
-    const double rest = mean(rest_albedo(wo, &marginal));
-    const double first = mean(first_albedo(wo, kSamplingNormalNodes));
+    const double rest = std::max(0.0, mean(rest_albedo(wo, &marginal)));
+    const double first = std::max(0.0, mean(first_albedo(wo, kSamplingNormalNodes)));
     rest_marginals_[node++] = PiecewiseConstant(marginal);
     return Rgb(first + rest > 0 ? first / (first + rest) : 0.5);
   });
@@ -122,7 +122,7 @@ Rgb TableBsdf::rest_albedo(const Vec3& wo, std::vector<double>* marginal) const 
       }
       in_bin += mean_value * (kWeight[g] * cos_i * 2 * kPi);
     }
-    if (marginal) (*marginal)[bin] = mean(in_bin);
+    if (marginal) (*marginal)[bin] = std::max(0.0, mean(in_bin));
     total += in_bin / kMarginalBins;
   }
   return total;

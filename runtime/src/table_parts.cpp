@@ -10,6 +10,7 @@ namespace sunbeam {
 namespace {
 
 constexpr std::array<const char*, 3> kFilmAxes = {"film_thickness_nm", "base_ior", "cos_theta"};
+constexpr std::array<const char*, 1> kFirstVisitAxes = {"optical_path"};
 constexpr std::array<const char*, 7> kRestAxes = {
     "film_thickness_nm", "base_ior", "absorption_per_nm", "cos_theta_i", "phi_i", "cos_theta_o", "phi_o"};
 constexpr std::array<const char*, 8> kRequiredInfo = {"recipe",    "recipe_hash", "seed",         "samples",
@@ -89,6 +90,23 @@ void check_ranges(const Table& table) {
     throw Error("array 'film_transmittance' has other axes than 'film_reflectance'");
 }
 
+// What the colours are. `spectrum` is part of the info already.
+void read_spectrum(const TableParts& parts, Table& table) {
+  const Attributes& attributes = parts.attributes;
+  const std::string& spectrum = require(attributes, "spectrum");
+  if (spectrum != "rgb3" && spectrum != "full")
+    throw Error("attribute 'spectrum' is '" + spectrum + "'; allowed: rgb3, full");
+  if (spectrum == "rgb3") return;
+  for (const char* key : {"color_space", "illuminant", "wavelengths"})
+    table.info[key] = require(attributes, key);
+  table.first_visit = checked_array(parts, "first_visit", kFirstVisitAxes);
+  try {
+    table.color_space();
+  } catch (const Error& error) {
+    throw Error(std::string("attribute 'color_space': ") + error.what());
+  }
+}
+
 Table build(const TableParts& parts) {
   const std::string& version = require(parts.attributes, "schema_version");
   if (version != std::to_string(kTableSchemaVersion))
@@ -110,6 +128,7 @@ Table build(const TableParts& parts) {
   if (require(parts.attributes, "content_hash") != parts_hash(parts))
     throw Error("content does not match its hash: the file is damaged");
   for (const char* key : kRequiredInfo) table.info[key] = require(parts.attributes, key);
+  read_spectrum(parts, table);
   for (const auto& [key, value] : parts.attributes)
     if (key.starts_with("error.")) table.info[key] = value;
   return table;
@@ -165,7 +184,8 @@ TableParts to_parts(const Table& table) {
   parts.attributes["symmetry"] = table.symmetry == Symmetry::isotropic ? "isotropic" : "anisotropic";
   for (const auto& key : material_keys()) parts.attributes["material." + key] = get_text(table.material, key);
   parts.arrays = {table.film_reflectance, table.remainder, table.rest_stderr};
-  if (!table.film_transmittance.empty()) parts.arrays.push_back(table.film_transmittance);
+  for (const NdArray* array : {&table.film_transmittance, &table.first_visit})
+    if (!array->empty()) parts.arrays.push_back(*array);
   for (const NdArray& array : parts.arrays) require_finite(array);
   // One order for every file form: both libraries list arrays in an order of their own.
   std::sort(parts.arrays.begin(), parts.arrays.end(),

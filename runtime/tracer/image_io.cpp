@@ -115,12 +115,12 @@ png_byte srgb_byte(double linear) {
   return static_cast<png_byte>(std::lround(255 * std::clamp(encoded, 0.0, 1.0)));
 }
 
-std::vector<png_byte> srgb_pixels(const Image& image) {
+std::vector<png_byte> srgb_pixels(const Image& image, ClipAccount& account) {
   std::vector<png_byte> bytes;
   bytes.reserve(image.rgb.size());
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
-      const Rgb color = display_color(image.get(x, y));
+      const Rgb color = display_color(account.clip(image.get(x, y), ColorSpace::rec709));
       for (int channel = 0; channel < 3; ++channel) bytes.push_back(srgb_byte(color[channel]));
     }
   return bytes;
@@ -153,9 +153,10 @@ ExrImage read_exr(const std::string& path) {
   }
 }
 
-void write_png(const std::string& path, const Image& image) {
+ClipAccount write_png(const std::string& path, const Image& image) {
   require_pixels(path, image);
-  const std::vector<png_byte> pixels = srgb_pixels(image);
+  ClipAccount account;
+  const std::vector<png_byte> pixels = srgb_pixels(image, account);
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(image.width);
@@ -167,6 +168,7 @@ void write_png(const std::string& path, const Image& image) {
     throw Error(fmt::format("{}: cannot write the PNG file: {}", path, png.message));
   bytes.resize(size);
   write_file_atomically(path, bytes);
+  return account;
 }
 
 Rgb display_color(const Rgb& scene_linear) {

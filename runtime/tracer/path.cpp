@@ -95,7 +95,9 @@ Rgb PathTracer::radiance(Ray ray, Rng& rng, PathCounts& counts) const {
     const Vec3 wi = vertex.frame.to_world(sample->wi);
     if (sample->wi.z <= 0 || !vertex.is_above(wi)) return result;
     if (bounce >= kFreeBounces) {
-      const double survival = std::min(1.0, max_component(throughput));
+      // Colours outside Rec.709 have negative components, which weigh as much.
+      const double survival =
+          std::min(1.0, max_component(transform(throughput, [](double x) { return std::abs(x); })));
       if (rng.uniform() >= survival) return result;
       throughput *= 1 / survival;
     }

@@ -23,7 +23,10 @@ struct SmallRecipe {
   double absorption_per_nm = 0.1;  // times 2 nm
   double albedo = 0.7;
   double exterior_ior = 1;
-  std::string grid;  // lines of [grid]
+  std::string albedo_text;  // in place of albedo
+  std::string material;     // more lines of [material]
+  std::string spectrum;     // lines of [spectrum]
+  std::string grid;         // lines of [grid]
   int cosines = 8;
   double noise = 0.01;
 
@@ -32,7 +35,8 @@ struct SmallRecipe {
            "\"\nroughness = " + to_text(roughness) + "\nfilm_thickness_nm = " + to_text(film_thickness_nm) +
            "\nexterior_ior = " + to_text(exterior_ior) + "\nfilm_ior = " + to_text(film_ior) +
            "\nbase_ior = " + to_text(base_ior) + "\nabsorption_per_nm = " + to_text(absorption_per_nm) +
-           "\npigment_thickness_nm = 2\nalbedo = " + to_text(albedo) + "\n[grid]\n" + grid +
+           "\npigment_thickness_nm = 2\nalbedo = " + (albedo_text.empty() ? to_text(albedo) : albedo_text) +
+           "\n" + material + "\n[spectrum]\n" + spectrum + "\n[grid]\n" + grid +
            "\n[table]\nprecision = \"float\"\nangles = " + std::to_string(cosines) +
            "\n[accuracy]\nnoise = " + to_text(noise) + "\n";
   }

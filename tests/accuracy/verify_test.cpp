@@ -40,7 +40,7 @@ double later_visits_share(const Material& m) {
     sum +=
         m.albedo[c] * 2 * test::integrate(0, 1, 64, [&](double mu) {
           return mu * airy(ThinFilm{m.exterior_ior, m.film_ior, m.base_ior, m.film_thickness_nm}.reversed(),
-                           mu, kRgb3WavelengthsNm)
+                           mu, {650, 510, 475})
                           .reflectance[c];
         });
   return sum / 3;

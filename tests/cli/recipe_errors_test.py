@@ -77,6 +77,44 @@ class RecipeErrors(support.CliTest):
         self.check("material", "roughness", "[]", "found 0 numbers")
         self.check("material", "roughness", "0.0001", "found 0.0001", "0.001 to 1")
 
+    def test_full_spectrum_keys_need_mode_full(self):
+        for key, value in (("illuminant", '"D65"'), ("color_space", '"acescg"')):
+            self.check("spectrum", key, value, "rgb3", 'allowed with "full" only')
+        self.check("material", "absorption_spectrum", '"flat"', "rgb3", 'allowed with "full" only')
+        self.check("material", "albedo", "[[400, 0.1], [700, 0.5]]", "rgb3", 'allowed with "full" only')
+
+    def check_full(self, section, key, value, *needles):
+        """As check(), in mode full."""
+        sections = {name: "" for name in SOUND}
+        sections["spectrum"] = 'mode = "full"\n'
+        sections[section] += f"{key} = {value}\n"
+        text = "".join(f"[{name}]\n{body}" for name, body in sections.items())
+        line = text[:text.index(f"{key} = {value}")].count("\n") + 1
+        name = self.write("bad.toml", text)
+        with self.subTest(f"{section}.{key} = {value}"):
+            self.refuse("bake", name, "-o", "out.exr", naming=[f"bad.toml:{line}: ", f"'{section}.{key}'", *needles])
+
+    def test_full_spectrum(self):
+        self.check_full("spectrum", "illuminant", '"A"', 'found "A"', '"D65", "E"')
+        self.check_full("spectrum", "color_space", '"srgb"', 'found "srgb"', '"acescg", "rec709"')
+        self.check_full("spectrum", "color_spce", '"rec709"', "not known", "'color_space'")
+        self.check_full("material", "absorption_spectrum", '"melanin"', 'found "melanin"', '"eumelanin", "pheomelanin"')
+        self.check_full("material", "absorption_spectrum", "3", "found 3", "string")
+        for key in ("albedo", "absorption_spectrum"):
+            self.check_full("material", key, "[[400, 0.5]]", "found 1 pairs", "at least two pairs")
+            self.check_full("material", key, "[[400, 0.5], [400, 0.6]]", "element 2 is [ 400, 0.6 ]", "ascending")
+            self.check_full("material", key, "[[400, 0.5], [500]]", "element 2 is [ 500 ]", "pairs")
+            self.check_full("material", key, '[[400, 0.5], [500, "dark"]]', "element 2", "pairs")
+            self.check_full("material", key, "[[400, 0.5], [500, nan]]", "element 2", "pairs")
+            self.check_full("material", key, "[[400, 0.5], 0.3]", "element 2 is 0.3", "pairs")
+            self.check_full("material", key, "[[400, 0.5], [500, -0.1]]", "element 2 is [ 500, -0.1 ]", "pairs")
+            self.check_full("material", key, "[[0, 0.5], [500, 0.1]]", "element 1 is [ 0, 0.5 ]", "1 to 1000000")
+        self.check_full("material", "albedo", "[[400, 0.5], [500, 1.1]]", "element 2 is [ 500, 1.1 ]", "0 to 1")
+        self.check_full("material", "albedo", "[0.5, 1.1, 0]", "element 2 is 1.1", "0 to 1")
+        self.check_full("material", "absorption_spectrum", "[[400, 1], [500, 0], [600, 0]]", "510 nm is 0", "positive")
+        self.check_full("material", "film_thickness_nm", "5600", "found 5600", "film_ior 1.56", "up to 5538")
+        self.check_full("grid", "film_thickness_nm", "[100, 5600]", "found 5600", "film_ior 1.56", "up to 5538")
+
     def test_grids(self):
         self.check("grid", "base_ior", "[]", "empty", "allowed")
         self.check("grid", "base_ior", "[1.6, 1.4]", "increase", "1.6", "1.4")

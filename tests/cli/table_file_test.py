@@ -13,7 +13,7 @@ import support
 OPTIONS = ("--seed", "7", "--set", "grid.base_ior=[1.4, 1.6]", "--set", "material.albedo=0.02")
 NAMES = ("table.exr", "table.vdb")
 KEYS = ["schema_version", "encoding", "bytes", "axes", "recipe", "recipe_hash", "seed", "samples", "estimator",
-        "spectrum", "tool_version", "error"]
+        "spectrum", "color_space", "tool_version", "error"]
 
 
 def setUpModule():
@@ -50,7 +50,7 @@ class Info(TableFileTest):
                 self.assertEqual(info["bytes"], (self.folder / name).stat().st_size)
                 self.assertEqual(info["seed"], 7)
                 self.assertGreater(info["samples"], 0)
-                self.assertEqual(info["spectrum"], "rgb3")
+                self.assertEqual((info["spectrum"], info["color_space"]), ("rgb3", "rec709"))
                 self.assertRegex(info["estimator"], r"^pfmc-\w+$")
                 self.assertRegex(info["recipe_hash"], r"^[0-9a-f]{32}$")
                 self.assertEqual(f"sunbeam {info['tool_version']}\n", self.succeed("--version").out)

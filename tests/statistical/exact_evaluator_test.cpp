@@ -52,7 +52,8 @@ TEST(ExactEvaluator, ReferenceCellsOfRoughRefraction) {
   constexpr int kPolar = 6, kAzimuthal = 24;
   for (const auto& row : test::read_reference("rough_refract.csv")) {
     const ExactRest exact = exact_of(row);
-    const Pfmc pfmc(test::material_of(row), Rgb(row.number("wavelength_nm")));
+    const Material material = test::material_of(row);
+    const Pfmc pfmc(material, Wavelengths::monochromatic(material, row.number("wavelength_nm")));
     const Vec3 wi = direction(row, "theta_i_deg");
     const double half = test::radians(row.number("half_deg")), phi = test::radians(row.number("phi_deg"));
     const double low = std::cos(test::radians(row.number("theta_o_deg")) + half);

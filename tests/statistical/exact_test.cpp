@@ -58,7 +58,7 @@ struct SmoothSumModel {
            });
   }
   double rest(const Vec3& wo, const Vec3& wi, int channel) const {
-    const double wavelength = kRgb3WavelengthsNm[channel], kd = m.albedo[channel];
+    const double wavelength = Wavelengths::rgb3(m).nm[channel], kd = m.albedo[channel];
     const double scale = m.transmission == Transmission::straight ? 1 : square(m.exterior_ior / m.base_ior);
     return scale * kd / kPi * arriving(wi, wavelength) * arriving(wo, wavelength) /
            (1 - kd * rho(wavelength));
@@ -122,7 +122,8 @@ const double kFurnaceAngles[] = {0.0, 0.6, 1.2, 1.5};
 TEST(Exact, WhiteFurnaceOneWavelengthExactly) {
   for (const auto transmission : {Transmission::straight, Transmission::refract})
     for (const double theta : kFurnaceAngles) {
-      const LiveBsdf bsdf(furnace(transmission), Rgb(550));
+      const Material material = furnace(transmission);
+      const LiveBsdf bsdf(material, Wavelengths::monochromatic(material, 550));
       const auto totals = test::sample_totals(bsdf, spherical_direction(theta, 0), 2000, 3);
       EXPECT_NEAR(totals.albedo.g.mean(), 1, 1e-9) << to_string(transmission) << ' ' << theta;
       EXPECT_EQ(totals.empty, 0);

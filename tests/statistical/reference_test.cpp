@@ -12,10 +12,11 @@ namespace {
 
 using test::radians;
 
-// One wavelength, carried three times: the values of all channels are the same.
-Pfmc pfmc_of(const test::CsvRow& row) {
-  return Pfmc(test::material_of(row), Rgb(row.number("wavelength_nm")));
+// One wavelength: the values of all channels are the same.
+Wavelengths wavelength_of(const test::CsvRow& row) {
+  return Wavelengths::monochromatic(test::material_of(row), row.number("wavelength_nm"));
 }
+Pfmc pfmc_of(const test::CsvRow& row) { return Pfmc(test::material_of(row), wavelength_of(row)); }
 Vec3 incident(const test::CsvRow& row) { return spherical_direction(radians(row.number("theta_i_deg")), 0); }
 
 // Walks until the relative standard error falls to `wanted` or `most` walks are spent.
@@ -52,7 +53,7 @@ TEST(Reference, EveryRowOfEval) {
 // Total of reflected power by sample(). 24 rows at 4 standard errors: 0.15 %. The table has 8 digits.
 TEST(Reference, EveryRowOfAlbedo) {
   for (const auto& row : test::read_reference("albedo.csv")) {
-    const LiveBsdf bsdf(test::material_of(row), Rgb(row.number("wavelength_nm")));
+    const LiveBsdf bsdf(test::material_of(row), wavelength_of(row));
     const double total = row.number("total");
     const auto sampled = test::sample_totals(bsdf, incident(row), 100000, row.line).albedo.g;
     EXPECT_NEAR(sampled.mean(), total, 4 * std::hypot(sampled.std_error(), row.number("stderr")) + 1e-7)
@@ -65,7 +66,7 @@ TEST(Reference, EveryRowOfAlbedo) {
 // standard errors of 16 repeats, Student's t: 24 rows 0.4 %.
 TEST(Reference, EveryRowOfAlbedoByEval) {
   for (const auto& row : test::read_reference("albedo.csv")) {
-    const LiveBsdf bsdf(test::material_of(row), Rgb(row.number("wavelength_nm")));
+    const LiveBsdf bsdf(test::material_of(row), wavelength_of(row));
     const Vec3 wi = incident(row);
     const double total = row.number("total"), dirac = pfmc_of(row).dirac(wi).g;
     const auto integral = test::albedo_by_eval(bsdf, wi, 60, 16, row.line).g;
@@ -85,7 +86,7 @@ TEST(Reference, FirstSurfaceColumnOfAlbedo) {
     const Pfmc pfmc = pfmc_of(row);
     const Vec3 wi = incident(row);
     const double specular = row.number("specular");
-    if (pfmc.film().is_smooth()) {
+    if (test::material_of(row).is_smooth()) {
       ++smooth;
       EXPECT_NEAR(pfmc.dirac(wi).g, specular, 1e-7) << "albedo.csv:" << row.line;
     } else {

@@ -113,7 +113,7 @@ TEST(ColorSpaces, AdaptationMovesWhiteToWhite) {
       const Vec3 adapted =
           bradford(illuminant_white(illuminant), white(space)) * illuminant_white(illuminant);
       EXPECT_LT(length(adapted - white(space)), 1e-14);
-      const Vec3 rgb = xyz_to_rgb(illuminant, space) * illuminant_white(illuminant);
+      const Vec3 rgb = xyz_to_rgb(illuminant_white(illuminant), space) * illuminant_white(illuminant);
       EXPECT_LT(length(rgb - Vec3{1, 1, 1}), 1e-13);
     }
 }

@@ -13,6 +13,12 @@
 // through a smooth film, the remainder holds further visits and what roughness changes. The exponential in
 // front of it carries its decay; the cap keeps it within the range of a half float. All values are per colour
 // channel.
+//
+// Where colours are folded spectra (spectrum "full") the two terms become
+//   F(tau path) / pi + decay(tau (1/m_i + 1/m_o)) remainder,
+//   decay(x) = F(x) / F(0), kept within a factor of 10 of D = max(mean F(x) / mean F(0), exp(-12)); D if F(0)
+//   <= 0,
+// with F = `first_visit`, T in front is raised to 30 % of its mean over channels, and values may be negative.
 #pragma once
 
 #include <array>
@@ -20,6 +26,7 @@
 #include <string>
 
 #include "sunbeam/angles.h"
+#include "sunbeam/core/color_space.h"
 #include "sunbeam/material.h"
 #include "sunbeam/nd_array.h"
 
@@ -54,14 +61,24 @@ struct Table {
   NdArray film_reflectance;
   NdArray film_transmittance;  // empty for a smooth film
 
+  // Spectrum "full" only, else empty. Axis optical_path: the base under its pigment without the film, times
+  // pi, folded over the wavelengths: F(x) = fold(kd exp(-a x)), a = absorption relative to the one at 510 nm.
+  NdArray first_visit;
+
   // Axes (film_thickness_nm, base_ior, absorption_per_nm, cos_theta_i, phi_i, cos_theta_o, phi_o); a
   // parameter that is not in the grid has one node.
   NdArray remainder;
   NdArray rest_stderr;  // standard error of rest, 1/sr, same axes
 
   // Provenance and measured error as text: recipe, recipe_hash, seed, samples, estimator, spectrum,
-  // tool_version, encoding, error.<name>.
+  // tool_version, encoding, error.<name>; with spectrum "full" also color_space, illuminant, wavelengths.
   std::map<std::string, std::string> info;
+
+  // True if colours are spectra folded into color_space(), where components may be negative; else R, G, B are
+  // three wavelengths (spectrum "rgb3").
+  bool is_full_spectrum() const;
+  // Of all colours in the table, the albedo included. The three wavelengths of rgb3 are taken as rec709.
+  ColorSpace color_space() const;
 
   const Axis& parameter_axis(std::size_t k) const { return remainder.axes()[k]; }
 
@@ -74,7 +91,9 @@ struct Table {
 // The remainder's frame at one parameter point, shared by the bake (encode) and the look-up (decode).
 class RestFrame {
  public:
-  explicit RestFrame(const Material& material) : material_(material), scale_(material.radiance_scale()) {}
+  // `first_visit` as in Table: empty for rgb3.
+  explicit RestFrame(const Material& material, NdArray first_visit = {})
+      : material_(material), scale_(material.radiance_scale()), first_visit_(std::move(first_visit)) {}
 
   Rgb decode(const Rgb& remainder, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
   Rgb encode(const Rgb& rest, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
@@ -82,13 +101,15 @@ class RestFrame {
  private:
   struct Terms {
     Rgb front;        // s T T
-    Rgb first_visit;  // kd/pi exp(-tau path)
-    double decay;
+    Rgb first_visit;  // in brackets, first term
+    Rgb decay;        // in brackets, what the remainder is multiplied by
   };
+  Terms folded_terms(double m_i, double m_o, const Rgb& t_i, const Rgb& t_o) const;
   Terms terms(double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
 
   Material material_;
   double scale_;
+  NdArray first_visit_;
 };
 
 }  // namespace sunbeam

@@ -8,8 +8,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
-#include "bake/optics/cie.h"
 #include "sunbeam/core/vec.h"
 
 namespace sunbeam {
@@ -17,6 +17,11 @@ namespace sunbeam {
 // rec709: ITU-R BT.709-6 primaries, white x, y = 0.3127, 0.3290.
 // acescg: AP1 primaries, white x, y = 0.32168, 0.33767 (AMPAS S-2014-004).
 enum class ColorSpace { rec709, acescg };
+
+// As recipes and tables spell it: "rec709", "acescg".
+std::string_view to_string(ColorSpace space);
+// Throws Error "found 'S'; allowed: rec709, acescg" (the caller adds where).
+ColorSpace color_space_from(std::string_view name);
 
 // Rows of a linear map between tristimulus values or linear colours.
 struct ColorMatrix {
@@ -37,9 +42,9 @@ ColorMatrix rgb_to_xyz(ColorSpace space);
 // Bradford's adaptation of XYZ seen under `from` to XYZ seen under `to` (CIE 160:2004; Lam 1985).
 ColorMatrix bradford(const Vec3& from, const Vec3& to);
 
-// XYZ measured under the illuminant (a perfect white diffuser has illuminant_white()) to linear RGB, adapted
-// to the white of the space: the white diffuser is (1, 1, 1) whatever the illuminant.
-ColorMatrix xyz_to_rgb(Illuminant illuminant, ColorSpace space);
+// XYZ measured under an illuminant, under which a perfect white diffuser has `illuminant_white`, to linear
+// RGB, adapted to the white of the space: the white diffuser is (1, 1, 1) whatever the illuminant.
+ColorMatrix xyz_to_rgb(const Vec3& illuminant_white, ColorSpace space);
 
 // Linear RGB of one space to another, adapted from white to white: (1, 1, 1) stays (1, 1, 1).
 ColorMatrix rgb_to_rgb(ColorSpace from, ColorSpace to);

@@ -1,4 +1,6 @@
-#include "bake/optics/color_space.h"
+#include "sunbeam/core/color_space.h"
+
+#include "sunbeam/core/error.h"
 
 namespace sunbeam {
 namespace {
@@ -49,6 +51,14 @@ ColorMatrix inverse(const ColorMatrix& matrix) {
   return from_columns(bc / determinant, ca / determinant, ab / determinant);
 }
 
+std::string_view to_string(ColorSpace space) { return space == ColorSpace::acescg ? "acescg" : "rec709"; }
+
+ColorSpace color_space_from(std::string_view name) {
+  for (const ColorSpace space : {ColorSpace::rec709, ColorSpace::acescg})
+    if (name == to_string(space)) return space;
+  throw Error("found '" + std::string(name) + "'; allowed: rec709, acescg");
+}
+
 Vec3 white(ColorSpace space) { return tristimulus(definition(space).white); }
 
 ColorMatrix rgb_to_xyz(ColorSpace space) {
@@ -62,8 +72,8 @@ ColorMatrix bradford(const Vec3& from, const Vec3& to) {
   return inverse(kBradford) * diagonal({b.x / a.x, b.y / a.y, b.z / a.z}) * kBradford;
 }
 
-ColorMatrix xyz_to_rgb(Illuminant illuminant, ColorSpace space) {
-  return inverse(rgb_to_xyz(space)) * bradford(illuminant_white(illuminant), white(space));
+ColorMatrix xyz_to_rgb(const Vec3& illuminant_white, ColorSpace space) {
+  return inverse(rgb_to_xyz(space)) * bradford(illuminant_white, white(space));
 }
 
 ColorMatrix rgb_to_rgb(ColorSpace from, ColorSpace to) {

@@ -4,8 +4,9 @@
 // light's, goes on until roulette ends it, and each of its vertices connects to all of the camera's:
 //   at the base     light arrived along m_s, camera arrived along n_t:   f1(m_s, n_t);
 //   at the film     light left the base along u_s, camera along v_t:     the film's lower lobe (rough films);
-//   on the way out  light left the base along u_s:                       its passage to wo (glossy crossings);
-//   on the way in   camera left the base along v_t:                      its passage to wi (glossy crossings).
+//   on the way out  light left the base along u_s:                       its passage to wo (glossy
+//   crossings); on the way in   camera left the base along v_t:                      its passage to wi
+//   (glossy crossings).
 // A path with k visits of the base can be made in up to 2 k + 1 of these ways. The balance heuristic weighs
 // them: shifting the connection by one vertex multiplies the density by (density of the direction between as
 // the other walk draws it) / (as this one does), so the sum over all shifts is a recursion along each walk
@@ -15,9 +16,9 @@
 //   weight = 1 / (1 + light's sum + camera's sum).
 // Shifts towards the light end where the camera would need more visits than it keeps; so X and U are held for
 // every number of visits that it has left. For a smooth film the densities of mirrored directions are Dirac
-// on both sides and cancel: X_s = U_{s-1}. Densities at the base are those of cos-weighted directions, whatever
-// the guide has, scaled to the least that it can give: weights may take any densities that all techniques agree
-// on.
+// on both sides and cancel: X_s = U_{s-1}. Densities at the base are those of cos-weighted directions,
+// whatever the guide has, scaled to the least that it can give: weights may take any densities that all
+// techniques agree on.
 #pragma once
 
 #include "bake/live/walk.h"
@@ -76,8 +77,8 @@ class BidirectionalWalk {
       if (t + 1 == kCameraVisits) return kCameraVisits;
       const auto next = steps_.reflect(vertex.up, light, roulette, rng);
       if (next.factor == 0) return t + 1;
-      down_sum = rough_ ? (V(1) + next.event.density_reverse * vertex.up_sum) / next.event.density
-                        : vertex.up_sum;
+      down_sum =
+          rough_ ? (V(1) + next.event.density_reverse * vertex.up_sum) / next.event.density : vertex.up_sum;
     }
   }
 
@@ -104,21 +105,19 @@ class BidirectionalWalk {
       const auto next = steps_.reflect(cosine, light, roulette, rng);
       if (next.factor == 0) return;
       for (int left = 0; left < kCameraVisits; ++left)
-        down[left] =
-            rough_ ? (V(1) + next.event.density_reverse * up[left]) / next.event.density : up[left];
+        down[left] = rough_ ? (V(1) + next.event.density_reverse * up[left]) / next.event.density : up[left];
     }
   }
 
   SUNBEAM_INLINE void connect_at_base(const Arrival<V>& light, const V& light_sum, const CameraVertex& camera,
                                       Estimate& estimate) const {
-    const V weight = V(kInvPi * layers_.radiance_scale) /
-                     (V(1) + base_density(light.cosine) * light_sum +
-                      base_density(camera.down.cosine) * camera.down_sum);
+    const V weight =
+        V(kInvPi * layers_.radiance_scale) /
+        (V(1) + base_density(light.cosine) * light_sum + base_density(camera.down.cosine) * camera.down_sum);
     Spectrum<V> value;
     for (int j = 0; j < layers_.count; ++j)
       value[j] = light.throughput[j] * camera.down.throughput[j] * V(layers_.albedo[j]) * weight;
-    if (layers_.product)
-      steps_.events().attenuate(V(1) / (light.cosine * camera.down.cosine), value);
+    if (layers_.product) steps_.events().attenuate(V(1) / (light.cosine * camera.down.cosine), value);
     for (int j = 0; j < layers_.count; ++j) estimate.sum[j] += value[j];
   }
 
@@ -127,9 +126,8 @@ class BidirectionalWalk {
     const auto lobe = steps_.events().mirror_below(up, camera.up, rng);
     const V factor = lobe.value * V(layers_.radiance_scale) /
                      (V(1) + lobe.reverse * light_sum + lobe.forward * camera.up_sum);
-    steps_.events().reflectances_below(lobe.film, [&](int j, const V& r) {
-      estimate.sum[j] += power[j] * camera.power[j] * r * factor;
-    });
+    steps_.events().reflectances_below(
+        lobe.film, [&](int j, const V& r) { estimate.sum[j] += power[j] * camera.power[j] * r * factor; });
   }
 
   // Out along w; `sum` over shifts away from w. The lobe holds the radiance scale.

@@ -21,9 +21,7 @@ class Facets {
   SUNBEAM_INLINE explicit Facets(double alpha) : alpha2_(alpha * alpha), alpha_(alpha) {}
 
   // cosine (1 + 2 Lambda).
-  SUNBEAM_INLINE V root(const V& cosine) const {
-    return sqrt(squared(cosine) * V(1 - alpha2_) + V(alpha2_));
-  }
+  SUNBEAM_INLINE V root(const V& cosine) const { return sqrt(squared(cosine) * V(1 - alpha2_) + V(alpha2_)); }
   // G2(a, b) / G1(a).
   SUNBEAM_INLINE V g2_over_g1(const V& a, const V& root_a, const V& b, const V& root_b) const {
     return b * (a + root_a) / (root_a * b + root_b * a);
@@ -113,8 +111,8 @@ class Events {
     const V m = select(through, min(other, V(1)), V(1));
     if (layers_.is_smooth()) return {m, V(1), select(through, V(1), V(0)), h.cosine};
     const V root_w = facets_.root(w);
-    const V density = facets_.visible(w, root_w) * h.cosine * facets_.d(h.cos_h) * far /
-                      squared(eta * h.cosine - far);
+    const V density =
+        facets_.visible(w, root_w) * h.cosine * facets_.d(h.cos_h) * far / squared(eta * h.cosine - far);
     return {m, select(through, density, V(1)),
             select(through, facets_.g2_over_g1(w, root_w, m, facets_.root(m)), V(0)), h.cosine};
   }
@@ -198,7 +196,8 @@ class Events {
   }
 
  private:
-  // "straight": the paper's Tbar has no shadowing; index-matched "refract": the limit of Walter's function has.
+  // "straight": the paper's Tbar has no shadowing; index-matched "refract": the limit of Walter's function
+  // has.
   SUNBEAM_INLINE V unbent_shadowing(const V& w) const {
     if (layers_.straight || layers_.is_smooth()) return V(1);
     const V root_w = facets_.root(w);

@@ -102,7 +102,8 @@ class FilmLanes {
     } else {
       // cos((j + 1) x) = 2 cos(x) cos(j x) - cos((j - 1) x).
       const V twice = V(2) * cos_of_phase(V(2 * phases_.step()) * c1_);
-      V previous = cos_of_phase(V(2 * (phases_.k[0] - phases_.step())) * c1_), current = cos_of_phase(V(2 * phases_.k[0]) * c1_);
+      V previous = cos_of_phase(V(2 * (phases_.k[0] - phases_.step())) * c1_),
+        current = cos_of_phase(V(2 * phases_.k[0]) * c1_);
       for (int j = 0; j < count; ++j) {
         visit(j, wave(current, power));
         const V next = twice * current - previous;

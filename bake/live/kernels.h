@@ -5,11 +5,12 @@
 
 namespace sunbeam::walk {
 
-// Both add estimates of rest, 1/sr per wavelength, to sums (see walk.h, bidirectional.h); wi and wo are cosines.
-// Neither allocates memory. All instruction sets give the same bits.
+// Both add estimates of rest, 1/sr per wavelength, to sums (see walk.h, bidirectional.h); wi and wo are
+// cosines. Neither allocates memory. All instruction sets give the same bits.
 struct Kernels {
   const char* name;
-  void (*unidirectional)(const Layers& layers, double wi, const double* wo, int exits, Rng& rng, double* sums);
+  void (*unidirectional)(const Layers& layers, double wi, const double* wo, int exits, Rng& rng,
+                         double* sums);
   void (*bidirectional)(const Layers& layers, double wi, double wo, Rng& rng, double* sums);
 };
 

@@ -20,9 +20,9 @@ struct Layers {
   bool bends;
   bool straight;  // the passage has no shadowing
 
-  int count;                                        // of wavelengths
-  std::array<double, kMostWavelengths> albedo;      // of the base
-  std::array<double, kMostWavelengths> tau;         // optical depth of the pigment
+  int count;                                    // of wavelengths
+  std::array<double, kMostWavelengths> albedo;  // of the base
+  std::array<double, kMostWavelengths> tau;     // optical depth of the pigment
   double least_tau;
   double brightest_albedo;
   bool same_tau;  // at all wavelengths

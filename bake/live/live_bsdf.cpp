@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-
 namespace sunbeam {
 
 LiveBsdf::LiveBsdf(const Material& material, const Wavelengths& wavelengths)
@@ -53,8 +52,7 @@ double LiveBsdf::reflect_chance(double cosine) const {
 
 double LiveBsdf::mis_pdf(const Vec3& wo, const Vec3& wi) const {
   if (wo.z <= 0 || wi.z <= 0) return 0;
-  const double rest =
-      (1 - reflect_chance(wo.z)) * (1 - reflect_chance(wi.z)) * wi.z / transmitted_cosine_;
+  const double rest = (1 - reflect_chance(wo.z)) * (1 - reflect_chance(wi.z)) * wi.z / transmitted_cosine_;
   if (ggx_.alpha() == 0) return rest;
   const Vec3 h = normalize(wo + wi);
   return ggx_.reflection_pdf(wo, h) * reflect_chance(dot(wo, h)) + rest;

@@ -1,7 +1,7 @@
 // The live model behind the BSDF contract: eval and pdf are unbiased estimates from one packet of walks.
 //
-// With many wavelengths every call draws kHeroes of them at random, in proportion to their share in colour and
-// spread evenly over it (Wilkie et al. 2014: one random hero, the others at fixed distances from it), and
+// With many wavelengths every call draws kHeroes of them at random, in proportion to their share in colour
+// and spread evenly over it (Wilkie et al. 2014: one random hero, the others at fixed distances from it), and
 // weighs them accordingly: unbiased in RGB, and its colour noise averages out.
 #pragma once
 

@@ -33,8 +33,8 @@ SUNBEAM_INLINE V polynomial(const double (&c)[kTerms], const V& x) {
   return ((pair(0) + pair(2) * x2) + (pair(4) + pair(6) * x2) * x4) + top * x8;
 }
 
-// exp(x) for x <= 0, to 1e-14 relative; 1e-304 below -700. The library's exp converts to integers lane by lane
-// before AVX-512. 2^n e^r with |r| <= ln(2) / 2, Taylor's series for e^r, n put into the exponent bits.
+// exp(x) for x <= 0, to 1e-14 relative; 1e-304 below -700. The library's exp converts to integers lane by
+// lane before AVX-512. 2^n e^r with |r| <= ln(2) / 2, Taylor's series for e^r, n put into the exponent bits.
 template <class Arch>
 SUNBEAM_INLINE xsimd::batch<double, Arch> exp_negative(const xsimd::batch<double, Arch>& x) {
   using Batch = xsimd::batch<double, Arch>;
@@ -43,8 +43,9 @@ SUNBEAM_INLINE xsimd::batch<double, Arch> exp_negative(const xsimd::batch<double
   const Batch shifted = clamped * Batch(std::numbers::log2e) + round;  // low bits: n + 1023
   const Batch n = shifted - round;
   const Batch r = (clamped - n * Batch(0x1.62e42feep-1)) - n * Batch(0x1.a39ef35793c76p-33);
-  constexpr double kTerm[] = {1,         1,          1.0 / 2,     1.0 / 6,      1.0 / 24,     1.0 / 120,
-                              1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880, 1.0 / 3628800, 1.0 / 39916800};
+  constexpr double kTerm[] = {
+      1,         1,          1.0 / 2,     1.0 / 6,      1.0 / 24,      1.0 / 120,
+      1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880, 1.0 / 3628800, 1.0 / 39916800};
   const Batch sum = polynomial<Batch>(kTerm, r);
   return sum * xsimd::bitwise_cast<Batch>(xsimd::bitwise_cast<Bits>(shifted) << 52);
 }

@@ -84,20 +84,21 @@ void Pfmc::add_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, std::spa
   for (std::size_t first = 0; first < wo.size(); first += chunk) {
     const std::size_t exits = std::min(chunk, wo.size() - first);
     double cosines[kChunk], values[kChunk * kMostWavelengths];
-    for (std::size_t k = 0; k < exits; ++k) cosines[k] = wo[first + k].z;
+    for (std::size_t k = 0; k < exits; ++k) cosines[k] = wo[first + k].z > 0 ? wo[first + k].z : 1;
     std::fill_n(values, exits * layers_.count, 0.0);
     if (technique == Technique::unidirectional)
       kernels_->unidirectional(layers_, wi.z, cosines, static_cast<int>(exits), rng, values);
     else
       kernels_->bidirectional(layers_, wi.z, cosines[0], rng, values);
     for (std::size_t k = 0; k < exits; ++k)
-      if (cosines[k] > 0) sums[first + k] += fold(values + k * layers_.count);
+      if (wo[first + k].z > 0) sums[first + k] += fold(values + k * layers_.count);
   }
 }
 
 std::optional<BsdfSample> Pfmc::sample(const Vec3& wo, Rng& rng) const {
   if (wo.z <= 0) return {};
-  const Vec3 h = layers_.is_smooth() ? Vec3{0, 0, 1} : ggx_.sample_visible(wo, {rng.uniform(), rng.uniform()});
+  const Vec3 h =
+      layers_.is_smooth() ? Vec3{0, 0, 1} : ggx_.sample_visible(wo, {rng.uniform(), rng.uniform()});
   const double cosine = std::clamp(dot(wo, h), 0.0, 1.0);
   Powers power = reflectances(layers_.film, cosine);
   const double reflect_chance = chance(power);

@@ -7,8 +7,8 @@
 // Unidirectional: walks from wi connect to wo through the film at every visit of the base (walk.h).
 // Bidirectional: walks from both sides, every connection, weighted by the balance heuristic
 // (bidirectional.h). Both are unbiased and exact in expectation for every film, smooth or rough, straight or
-// refracting. Reciprocity of the passage turns leaving into entering, which leaves one factor (n0/n2)^2 on the
-// whole rest.
+// refracting. Reciprocity of the passage turns leaving into entering, which leaves one factor (n0/n2)^2 on
+// the whole rest.
 //
 // One estimate is the mean of kLanes stratified walks, worked on side by side at all wavelengths, and folded
 // into linear RGB. Directions are chosen alike for all wavelengths. No hidden state, no allocation in a call.

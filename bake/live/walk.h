@@ -1,9 +1,9 @@
 // The unidirectional estimator of the rest, for a packet of walks at once (templates; see pfmc.h).
 //
 // Throughputs are powers per wavelength. At the base a walk that arrived along m connects to m', a passage
-// drawn from wo: f1(m, m') T(wo -> m'). That alone serves every film: f1 is bounded by kd / pi and the passage's
-// weight by 1. (Adding the walk's own way out through a rough film by multiple importance sampling was measured:
-// more time and, if anything, more noise; docs/live.md.)
+// drawn from wo: f1(m, m') T(wo -> m'). That alone serves every film: f1 is bounded by kd / pi and the
+// passage's weight by 1. (Adding the walk's own way out through a rough film by multiple importance sampling
+// was measured: more time and, if anything, more noise; docs/live.md.)
 #pragma once
 
 #include "bake/live/events.h"
@@ -21,12 +21,13 @@ inline constexpr int kMostExits = 8;
 // Decides for all lanes together when a walk ends.
 class Roulette {
  public:
-  // `share` is what one more visit leaves of the brightest wavelength. Returns the factor to go on with, or 0.
+  // `share` is what one more visit leaves of the brightest wavelength. Returns the factor to go on with, or
+  // 0.
   SUNBEAM_INLINE double go_on(double share, Rng& rng) {
     left_ *= share;
     if (left_ >= kRouletteStart) return 1;
     const double survival = left_ / kRouletteStart;
-    if (rng.uniform() >= survival) return 0;
+    if (!(rng.uniform() < survival)) return 0;
     left_ = kRouletteStart;
     return 1 / survival;
   }

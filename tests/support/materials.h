@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/live/wavelengths.h"
 #include "sunbeam/material.h"
 
 namespace sunbeam::test {
@@ -34,6 +35,18 @@ inline std::vector<NamedMaterial> all_modes(double roughness = 0.3, double optic
                           m});
       }
   return result;
+}
+
+// Unevenly weighted, with an albedo and an absorption of their own at each; channels stay positive.
+inline Wavelengths twelve_wavelengths(const Material& material) {
+  Wavelengths w;
+  for (int k = 0; k < 12; ++k) {
+    w.nm.push_back(400 + 27.0 * k);
+    w.albedo.push_back(material.albedo[k % 3] * (1 - 0.02 * k));
+    w.absorption.push_back(2.0 - 0.15 * k);
+    w.weight.push_back(Rgb(k < 8 ? 0.125 : 0, k < 6 ? 0.15 : 0.1 / 6, k < 2 ? -0.05 : 0.11));
+  }
+  return w;
 }
 
 }  // namespace sunbeam::test

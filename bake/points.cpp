@@ -128,7 +128,9 @@ class LivePoint {
         model_(material, wavelengths()),
         rng_(settings.seed, point.stream) {
     if (settings.estimator == Estimator::exact && settings.quantity != Quantity::film)
-      exact_.emplace(material, wavelengths());
+      exact_.emplace(material, point.wavelength_nm
+                                   ? Wavelengths::monochromatic(material, *point.wavelength_nm)
+                                   : Wavelengths::rgb3(material));
   }
 
   Results brdf() {

@@ -105,7 +105,7 @@ class PointCheck {
   }
 
   std::vector<Rgb> exact_rest() const {
-    const ExactRest exact(bsdf_->material());
+    const ExactRest exact(bsdf_->material(), Wavelengths::rgb3(bsdf_->material()));
     std::vector<Rgb> live;
     for (const Vec3& wo : directions_.wo) live.push_back(exact.rest(wo, wi_));
     return live;

@@ -10,7 +10,7 @@
 
 #include "bake/cell.h"
 #include "bake/csv.h"
-#include "bake/exact_fold.h"
+#include "bake/live/exact.h"
 #include "bake/live/pfmc.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/table_bsdf.h"
@@ -170,7 +170,7 @@ class LivePoint {
   Point point_;
   std::int64_t samples_;
   Pfmc model_;
-  std::optional<ExactFold> exact_;
+  std::optional<ExactRest> exact_;
   Rng rng_;
 };
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "bake/cell.h"
-#include "bake/exact_fold.h"
+#include "bake/live/exact.h"
 #include "bake/live/pfmc.h"
 #include "bake/parallel_tasks.h"
 #include "bake/recipe.h"
@@ -104,7 +104,7 @@ class PointCheck {
   }
 
   std::vector<Rgb> exact_rest() const {
-    const ExactFold exact(bsdf_->material(), wavelengths_);
+    const ExactRest exact(bsdf_->material(), wavelengths_);
     std::vector<Rgb> live;
     for (const Vec3& wo : directions_.wo) live.push_back(exact.rest(wo, wi_));
     return live;

@@ -2,8 +2,12 @@
 
 namespace sunbeam {
 
-ExactRest::ExactRest(const Material& material, const Rgb& wavelengths_nm, const ExactResolution& resolution)
-    : material_(material), film_(material, wavelengths_nm, resolution) {
+ExactTriple::ExactTriple(const Material& material, const Rgb& wavelengths_nm, const Rgb& albedo,
+                         const Rgb& absorption, const ExactResolution& resolution)
+    : material_(material),
+      base_albedo_(albedo),
+      absorption_(absorption),
+      film_(material, wavelengths_nm, resolution) {
   const auto reflection = film_.reflection();
   const auto exit = film_.exit(reflection);
   if (material.absorption_path == AbsorptionPath::sum)
@@ -12,65 +16,78 @@ ExactRest::ExactRest(const Material& material, const Rgb& wavelengths_nm, const 
     solve_product(reflection, exit);
 }
 
-// f1 / kd.
-double ExactRest::attenuated(double cos_i, double cos_o) const {
-  return kInvPi * std::exp(material_.absorption_exponent(cos_i, cos_o));
+// exp of the material's own exponent, scaled to each wavelength. Often all absorb alike.
+Rgb ExactTriple::attenuation(double exponent) const {
+  if (absorption_.r == absorption_.g && absorption_.g == absorption_.b)
+    return Rgb(std::exp(absorption_.r * exponent));
+  return transform(absorption_, [&](double relative) { return std::exp(relative * exponent); });
 }
 
-void ExactRest::solve_sum(const std::array<Matrix, 3>& reflection, const std::array<Vector, 3>& exit) {
-  Vector attenuation;
-  for (const double mu : film_.basis().nodes())
-    attenuation.push_back(std::exp(-material_.optical_depth() / mu));
+// f1 / kd.
+Rgb ExactTriple::attenuated(double cos_i, double cos_o) const {
+  return kInvPi * attenuation(material_.absorption_exponent(cos_i, cos_o));
+}
+
+void ExactTriple::solve_sum(const Matrices& reflection, const Vectors& exit) {
+  Vectors attenuation_at;
+  for (const double mu : film_.basis().nodes()) {
+    const Rgb value = attenuation(-material_.optical_depth() / mu);
+    for (int c = 0; c < 3; ++c) attenuation_at[c].push_back(value[c]);
+  }
   for (int c = 0; c < 3; ++c) {
-    const double rho = kInvPi * dot(multiply(attenuation, reflection[c]), attenuation);
-    gain_[c] = material_.albedo[c] * kInvPi / (1 - material_.albedo[c] * rho);
-    leaving_[c] = dot(exit[c], attenuation);
+    const double rho = kInvPi * dot(multiply(attenuation_at[c], reflection[c]), attenuation_at[c]);
+    gain_[c] = base_albedo_[c] * kInvPi / (1 - base_albedo_[c] * rho);
+    leaving_[c] = dot(exit[c], attenuation_at[c]);
   }
 }
 
-void ExactRest::solve_product(const std::array<Matrix, 3>& reflection, const std::array<Vector, 3>& exit) {
+void ExactTriple::solve_product(const Matrices& reflection, const Vectors& exit) {
   const int n = film_.basis().size();
+  Matrices f{Matrix(n), Matrix(n), Matrix(n)};
+  for (int i = 0; i < n; ++i) {
+    const Vectors v = towards_nodes(film_.basis().nodes()[i]);
+    for (int c = 0; c < 3; ++c) add_scaled(base_albedo_[c], v[c].data(), n, f[c].row(i));
+  }
   for (int c = 0; c < 3; ++c) {
-    Matrix f(n);
-    for (int i = 0; i < n; ++i)
-      add_scaled(material_.albedo[c], towards_nodes(film_.basis().nodes()[i]).data(), n, f.row(i));
-    Matrix system = multiply(reflection[c], f);  // 1 - B F
+    Matrix system = multiply(reflection[c], f[c]);  // 1 - B F
     for (int i = 0; i < n; ++i)
       for (int k = 0; k < n; ++k) system.row(i)[k] = (i == k ? 1 : 0) - system.row(i)[k];
     Matrix m = solve(std::move(system), reflection[c]);
     symmetrise(m);
-    albedo_[c] = multiply(multiply(exit[c], f), m);
-    add_scaled(1, exit[c].data(), n, albedo_[c].data());
+    exit_[c] = multiply(multiply(exit[c], f[c]), m);
+    add_scaled(1, exit[c].data(), n, exit_[c].data());
     visits_[c] = std::move(m);
     if (film_.has_single_crossing()) continue;
-    albedo_[c] = multiply(albedo_[c], f);
-    Matrix g = multiply(multiply(f, visits_[c]), f);
-    for (int i = 0; i < n; ++i) add_scaled(1, f.row(i), n, g.row(i));
+    exit_[c] = multiply(exit_[c], f[c]);
+    Matrix g = multiply(multiply(f[c], visits_[c]), f[c]);
+    for (int i = 0; i < n; ++i) add_scaled(1, f[c].row(i), n, g.row(i));
     symmetrise(g);
     visits_[c] = std::move(g);
   }
 }
 
 // v / kd of light that arrives at `cosine`.
-Vector ExactRest::towards_nodes(double cosine) const {
-  Vector v;
-  v.reserve(film_.basis().size());
-  for (const double mu : film_.basis().nodes()) v.push_back(attenuated(cosine, mu));
+ExactTriple::Vectors ExactTriple::towards_nodes(double cosine) const {
+  Vectors v;
+  for (Vector& channel : v) channel.reserve(film_.basis().size());
+  for (const double mu : film_.basis().nodes()) {
+    const Rgb value = attenuated(cosine, mu);
+    for (int c = 0; c < 3; ++c) v[c].push_back(value[c]);
+  }
   return v;
 }
 
-// A(w).
-Rgb ExactRest::arriving(const Vec3& w) const {
+Rgb ExactTriple::arriving(const Vec3& w) const {
   Rgb sum;
   for (const auto& point : film_.passages(w))
-    sum += point.power * std::exp(-material_.optical_depth() / point.cosine);
+    sum += point.power * attenuation(-material_.optical_depth() / point.cosine);
   return sum;
 }
 
 // p_t(w -> m) as weights of the nodes: interpolates what it will be multiplied with.
-std::array<Vector, 3> ExactRest::on_nodes(const Vec3& w) const {
+ExactTriple::Vectors ExactTriple::on_nodes(const Vec3& w) const {
   const CosineBasis& basis = film_.basis();
-  std::array<Vector, 3> sum;
+  Vectors sum;
   sum.fill(Vector(basis.size()));
   for (const auto& point : film_.passages(w)) {
     const auto stencil = basis.at(point.cosine);
@@ -80,54 +97,93 @@ std::array<Vector, 3> ExactRest::on_nodes(const Vec3& w) const {
   return sum;
 }
 
-Rgb ExactRest::rest_of_sum(const Vec3& wo, const Vec3& wi) const {
-  return gain_ * arriving(wo) * arriving(wi);
-}
-
-Rgb ExactRest::rest_of_product(const Vec3& wo, const Vec3& wi) const {
+Rgb ExactTriple::rest_of_product(const Vec3& wo, const Vec3& wi) const {
   const auto out = film_.passages(wo), in = film_.passages(wi);
   if (out.empty() || in.empty()) return {};
-  const Vector v_out = towards_nodes(out[0].cosine), v_in = towards_nodes(in[0].cosine);
-  const double first_visit = attenuated(out[0].cosine, in[0].cosine);
-  Rgb visits;
-  for (int c = 0; c < 3; ++c)
-    visits[c] = first_visit + material_.albedo[c] * dot(multiply(v_in, visits_[c]), v_out);
-  return material_.albedo * (out[0].power * in[0].power) * visits;
+  const Vectors v_out = towards_nodes(out[0].cosine), v_in = towards_nodes(in[0].cosine);
+  Rgb visits = attenuated(out[0].cosine, in[0].cosine);
+  for (int c = 0; c < 3; ++c) visits[c] += base_albedo_[c] * dot(multiply(v_in[c], visits_[c]), v_out[c]);
+  return base_albedo_ * (out[0].power * in[0].power) * visits;
 }
 
-Rgb ExactRest::rest_through_facets(const Vec3& wo, const Vec3& wi) const {
+Rgb ExactTriple::rest_through_facets(const Vec3& wo, const Vec3& wi) const {
   const auto out = on_nodes(wo), in = on_nodes(wi);
   Rgb sum;
   for (int c = 0; c < 3; ++c) sum[c] = std::max(0.0, dot(multiply(in[c], visits_[c]), out[c]));
   return sum;
 }
 
-Rgb ExactRest::rest(const Vec3& wo, const Vec3& wi) const {
-  if (wo.z <= 0 || wi.z <= 0) return {};
-  const Rgb unscaled = material_.absorption_path == AbsorptionPath::sum ? rest_of_sum(wo, wi)
-                       : film_.has_single_crossing()                    ? rest_of_product(wo, wi)
-                                                                        : rest_through_facets(wo, wi);
-  return unscaled * material_.radiance_scale();
+Rgb ExactTriple::rest(const Vec3& wo, const Vec3& wi) const {
+  if (material_.absorption_path == AbsorptionPath::sum) return gain() * (arriving(wo) * arriving(wi));
+  return material_.radiance_scale() *
+         (film_.has_single_crossing() ? rest_of_product(wo, wi) : rest_through_facets(wo, wi));
 }
 
-Rgb ExactRest::rest_albedo(const Vec3& w) const {
+Rgb ExactTriple::rest_albedo(const Vec3& w) const {
   if (material_.absorption_path == AbsorptionPath::sum) return gain_ * arriving(w) * leaving_;
   Rgb sum;
   if (film_.has_single_crossing()) {
     for (const auto& point : film_.passages(w)) {
-      const Vector v = towards_nodes(point.cosine);
-      for (int c = 0; c < 3; ++c) sum[c] = material_.albedo[c] * point.power[c] * dot(v, albedo_[c]);
+      const Vectors v = towards_nodes(point.cosine);
+      for (int c = 0; c < 3; ++c) sum[c] = base_albedo_[c] * point.power[c] * dot(v[c], exit_[c]);
     }
     return sum;
   }
   const auto in = on_nodes(w);
-  for (int c = 0; c < 3; ++c) sum[c] = dot(in[c], albedo_[c]);
+  for (int c = 0; c < 3; ++c) sum[c] = dot(in[c], exit_[c]);
   return sum;
+}
+
+ExactRest::ExactRest(const Material& material, const Wavelengths& wavelengths,
+                     const ExactResolution& resolution)
+    : wavelengths_(wavelengths) {
+  for (std::size_t first = 0; first < wavelengths.size(); first += 3) {
+    const auto of = [&](const std::vector<double>& values) {
+      const std::size_t last = values.size() - 1;
+      return Rgb(values[first], values[std::min(first + 1, last)], values[std::min(first + 2, last)]);
+    };
+    triples_.emplace_back(material, of(wavelengths.nm), of(wavelengths.albedo), of(wavelengths.absorption),
+                          resolution);
+  }
+}
+
+template <class F>
+std::vector<double> ExactRest::each(F of_triple) const {
+  std::vector<double> values;
+  for (const ExactTriple& triple : triples_) {
+    const Rgb value = of_triple(triple);
+    values.insert(values.end(), {value.r, value.g, value.b});
+  }
+  values.resize(wavelengths_.size());
+  return values;
+}
+
+template <class F>
+Rgb ExactRest::fold(F of_triple) const {
+  return wavelengths_.fold(each(of_triple));
+}
+
+Rgb ExactRest::rest(const Vec3& wo, const Vec3& wi) const {
+  if (wo.z <= 0 || wi.z <= 0) return {};
+  return fold([&](const ExactTriple& triple) { return triple.rest(wo, wi); });
 }
 
 Rgb ExactRest::albedo(const Vec3& w) const {
   if (w.z <= 0) return {};
-  return film_.first_albedo(w) + rest_albedo(w);
+  return fold([&](const ExactTriple& triple) { return triple.first_albedo(w) + triple.rest_albedo(w); });
+}
+
+Rgb ExactRest::rest_albedo(const Vec3& w) const {
+  if (w.z <= 0) return {};
+  return fold([&](const ExactTriple& triple) { return triple.rest_albedo(w); });
+}
+
+std::vector<double> ExactRest::arriving(const Vec3& w) const {
+  return each([&](const ExactTriple& triple) { return triple.arriving(w); });
+}
+
+std::vector<double> ExactRest::gain() const {
+  return each([](const ExactTriple& triple) { return triple.gain(); });
 }
 
 }  // namespace sunbeam

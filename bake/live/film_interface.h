@@ -18,8 +18,6 @@
 namespace sunbeam {
 
 // A microfacet met by a walk: a visible normal and what the film does there. Smooth: the macro normal.
-inline constexpr Rgb kRgb3WavelengthsNm{650, 510, 475};
-
 struct Facet {
   Vec3 normal;
   FilmPower power;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "bake/live/exact.h"
+#include "bake/live/pfmc.h"
 #include "sunbeam/core/rng.h"
 #include "tests/support/bsdf_checks.h"
 #include "tests/support/csv.h"
@@ -13,8 +14,13 @@ namespace {
 
 const ExactResolution kFine{14, 36, 18, 24, 40};
 
+ExactRest exact_rgb3(const Material& m, const ExactResolution& resolution = {}) {
+  return ExactRest(m, Wavelengths::rgb3(m), resolution);
+}
+
 ExactRest exact_of(const test::CsvRow& row) {
-  return ExactRest(test::material_of(row), Rgb(row.number("wavelength_nm")));
+  const Material m = test::material_of(row);
+  return ExactRest(m, Wavelengths::monochromatic(m, row.number("wavelength_nm")));
 }
 
 Vec3 direction(const test::CsvRow& row, const std::string& key, double azimuth = 0) {
@@ -94,7 +100,7 @@ TEST(ExactEvaluator, WalksAgreeOnRoughRefraction) {
     m.albedo = {0.9, 0.8, 0.6};
     const Pfmc pfmc(m);
     const Vec3 wo = spherical_direction(c.theta_o, 0), wi = spherical_direction(c.theta_i, 2);
-    const Rgb expected = ExactRest(m).rest(wo, wi);
+    const Rgb expected = exact_rgb3(m).rest(wo, wi);
     Rng rng(11, 0);
     test::RgbMean mean;
     for (int block = 0; block < 200; ++block) {
@@ -114,7 +120,7 @@ TEST(ExactEvaluator, WhiteFurnace) {
     for (const double base_ior : {1.0, 1.35, 2.0}) {
       if (!m.is_smooth()) continue;
       m.base_ior = base_ior;
-      const ExactRest exact(m);
+      const ExactRest exact = exact_rgb3(m);
       for (const double theta : {0.0, 0.7, 1.3, 1.55})
         expect_relative(exact.albedo(spherical_direction(theta, 0)), Rgb(1), 1e-9, name);
     }
@@ -126,7 +132,7 @@ TEST(ExactEvaluator, RoughWhiteFurnaceIsNotAboveOne) {
     for (const auto& [name, m] : test::all_modes(roughness, 0, Rgb(1))) {
       if (m.is_smooth()) continue;
       for (const double theta : {0.0, 0.7, 1.4}) {
-        const Rgb albedo = ExactRest(m).albedo(spherical_direction(theta, 0));
+        const Rgb albedo = exact_rgb3(m).albedo(spherical_direction(theta, 0));
         EXPECT_LE(max_component(albedo), 1 + 1e-5) << name;
         EXPECT_GT(max_component(albedo), roughness < 0.1 ? 0.9 : 0.3) << name;
       }
@@ -140,7 +146,7 @@ TEST(ExactEvaluator, PathsAgreeWithoutPigment) {
       Material other = m;
       other.absorption_path = AbsorptionPath::sum;
       const Vec3 wo = spherical_direction(1.3, 0), wi = spherical_direction(0.4, 2);
-      const ExactRest exact(m), sum(other);
+      const ExactRest exact = exact_rgb3(m), sum = exact_rgb3(other);
       expect_relative(exact.rest(wo, wi), sum.rest(wo, wi), 1e-10, name);
       expect_relative(exact.albedo(wo), sum.albedo(wo), 1e-10, name);
     }
@@ -148,7 +154,7 @@ TEST(ExactEvaluator, PathsAgreeWithoutPigment) {
 
 TEST(ExactEvaluator, Reciprocity) {
   for (const auto& [name, m] : test::all_modes()) {
-    const ExactRest exact(m);
+    const ExactRest exact = exact_rgb3(m);
     for (const double a : {0.1, 0.8, 1.5})
       for (const double b : {0.3, 1.2}) {
         const Vec3 wo = spherical_direction(a, 0), wi = spherical_direction(b, 2);
@@ -160,11 +166,11 @@ TEST(ExactEvaluator, Reciprocity) {
 // The albedo is the first surface and the integral of rest() over the hemisphere.
 TEST(ExactEvaluator, AlbedoIsTheIntegralOfRest) {
   for (const auto& [name, m] : test::all_modes()) {
-    const ExactRest exact(m);
+    const ExactRest exact = exact_rgb3(m);
     Material black = m;
     black.albedo = Rgb(0);
     const Vec3 wo = spherical_direction(0.6, 0);
-    Rgb expected = ExactRest(black).albedo(wo);
+    Rgb expected = exact_rgb3(black).albedo(wo);
     for (int c = 0; c < 3; ++c)
       expected[c] += test::integrate(
           0, 1, 5, [&](double mu) { return 2 * kPi * mu * exact.rest(wo, direction_from_cosine(mu, 0))[c]; });
@@ -180,7 +186,7 @@ TEST(ExactEvaluator, MoreNodesChangeNothing) {
     m.film_thickness_nm = 1500 * rng.uniform();
     m.base_ior = trial < 8 ? 1.0001 : 1.05 + rng.uniform();
     m.absorption_per_nm = std::pow(10, -4 + 4 * rng.uniform());
-    const ExactRest exact(m), finer(m, kRgb3WavelengthsNm, kFine);
+    const ExactRest exact = exact_rgb3(m), finer = exact_rgb3(m, kFine);
     const Vec3 wo = spherical_direction(1.5 * rng.uniform(), 0);
     const Vec3 wi = spherical_direction(1.5 * rng.uniform(), 0);
     const Rgb expected = finer.rest(wo, wi);
@@ -188,6 +194,39 @@ TEST(ExactEvaluator, MoreNodesChangeNothing) {
     for (int c = 0; c < 3; ++c)
       EXPECT_NEAR(exact.rest(wo, wi)[c], expected[c], tolerance * expected[c] + 1e-15) << "trial " << trial;
     expect_relative(exact.albedo(wo), finer.albedo(wo), tolerance, "trial " + std::to_string(trial));
+  }
+}
+
+// Wavelengths carried together are those carried alone, each with its own albedo and absorption, folded. Ten:
+// the last three stand beside copies of the last.
+TEST(ExactEvaluator, WavelengthsAreIndependent) {
+  for (auto [name, m] : test::all_modes()) {
+    Wavelengths together;
+    for (int k = 0; k < 10; ++k) {
+      together.nm.push_back(400 + 33 * k);
+      together.albedo.push_back(0.95 - 0.08 * k);
+      together.absorption.push_back(3.0 / (1 + k));
+      together.weight.push_back({0.1 * k, 0.3, 1 - 0.2 * k});
+    }
+    const Vec3 wo = spherical_direction(1.2, 0), wi = spherical_direction(0.4, 2);
+    Rgb rest, albedo;
+    for (int k = 0; k < 10; ++k) {
+      Material alone = m;
+      alone.albedo = Rgb(together.albedo[k]);
+      alone.absorption_per_nm *= together.absorption[k];
+      const ExactRest exact(alone, Wavelengths::monochromatic(alone, together.nm[k]));
+      rest += exact.rest(wo, wi) * together.weight[k];
+      albedo += exact.albedo(wo) * together.weight[k];
+    }
+    const ExactRest exact(m, together);
+    const double tolerance =
+        m.is_smooth() ? 1e-11 : 1e-5;  // the rougher film's nodes follow the shortest wave
+    expect_relative(exact.rest(wo, wi), rest, tolerance, name);
+    expect_relative(exact.albedo(wo), albedo, tolerance, name);
+    if (m.absorption_path == AbsorptionPath::product) continue;
+    std::vector<double> terms = exact.gain();
+    for (std::size_t k = 0; k < terms.size(); ++k) terms[k] *= exact.arriving(wo)[k] * exact.arriving(wi)[k];
+    expect_relative(together.fold(terms), exact.rest(wo, wi), 1e-13, name);
   }
 }
 
@@ -199,7 +238,7 @@ TEST(ExactEvaluator, IndexMatchedIsThePlainBase) {
     m.film_ior = m.base_ior = 1;
     const double a = std::cos(0.3), b = std::cos(1.2);
     const Rgb expected = m.albedo * (kInvPi * std::exp(m.absorption_exponent(a, b)));
-    expect_relative(ExactRest(m).rest(spherical_direction(0.3, 0), spherical_direction(1.2, 2)), expected,
+    expect_relative(exact_rgb3(m).rest(spherical_direction(0.3, 0), spherical_direction(1.2, 2)), expected,
                     1e-13, name);
   }
 }
@@ -210,23 +249,23 @@ TEST(ExactEvaluator, ContinuousAtEqualIndices) {
   for (auto [name, m] : test::all_modes()) {
     if (m.is_smooth() || m.transmission == Transmission::straight) continue;
     m.base_ior = 1;
-    const Rgb at_one = ExactRest(m).rest(wo, wi);
+    const Rgb at_one = exact_rgb3(m).rest(wo, wi);
     m.base_ior = 1 + 1e-6;
-    expect_relative(ExactRest(m).rest(wo, wi), at_one, 1e-4, name);
+    expect_relative(exact_rgb3(m).rest(wo, wi), at_one, 1e-4, name);
   }
 }
 
 TEST(ExactEvaluator, NothingWhereNothingIs) {
   for (auto [name, m] : test::all_modes()) {
     const Vec3 up = spherical_direction(0.4, 0), down = spherical_direction(2, 0);
-    EXPECT_TRUE(is_black(ExactRest(m).rest(up, down))) << name;
-    EXPECT_TRUE(is_black(ExactRest(m).rest(down, up))) << name;
-    EXPECT_TRUE(is_black(ExactRest(m).albedo(down))) << name;
+    EXPECT_TRUE(is_black(exact_rgb3(m).rest(up, down))) << name;
+    EXPECT_TRUE(is_black(exact_rgb3(m).rest(down, up))) << name;
+    EXPECT_TRUE(is_black(exact_rgb3(m).albedo(down))) << name;
     m.albedo = Rgb(0);
-    EXPECT_TRUE(is_black(ExactRest(m).rest(up, up))) << name;
+    EXPECT_TRUE(is_black(exact_rgb3(m).rest(up, up))) << name;
     m.albedo = Rgb(0.5);
     m.absorption_per_nm = 1000;  // optical depth 2000: underflows to nothing, not to NaN
-    EXPECT_LT(max_component(ExactRest(m).rest(up, up)), 1e-300) << name;
+    EXPECT_LT(max_component(exact_rgb3(m).rest(up, up)), 1e-300) << name;
   }
 }
 

@@ -51,6 +51,14 @@ std::string describe(const toml::node& node) {
                              : "a date or time";
 }
 
+// An element of a list of pairs.
+std::string describe_pair(const toml::node& node) {
+  const toml::array* pair = node.as_array();
+  if (!pair) return describe(node);
+  if (pair->size() != 2) return fmt::format("a list of {}", pair->size());
+  return fmt::format("[{}, {}]", describe((*pair)[0]), describe((*pair)[1]));
+}
+
 std::string range_text(const Range& allowed) { return fmt::format("{} to {}", allowed.low, allowed.high); }
 
 // The value of an override: TOML if it parses as such, else a bare string.
@@ -222,9 +230,7 @@ std::vector<std::pair<double, double>> ConfigTable::curve(std::string_view key, 
     const auto x = is_pair ? number_of(*pair, 0, allowed_x) : std::nullopt;
     const auto y = is_pair ? number_of(*pair, 1, allowed_y) : std::nullopt;
     if (!x || !y || (!result.empty() && *x <= result.back().first)) {
-      std::ostringstream found;
-      found << toml::node_view<const toml::node>(element);
-      fail(key, fmt::format("element {} is {}; {}", result.size() + 1, found.str(), allowed));
+      fail(key, fmt::format("element {} is {}; {}", result.size() + 1, describe_pair(element), allowed));
     }
     result.emplace_back(*x, *y);
   }

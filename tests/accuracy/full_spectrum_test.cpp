@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "bake/verify.h"
+#include "sunbeam/table_io.h"
 #include "sunbeam/table_vdb.h"
 #include "tests/accuracy/support.h"
 
@@ -42,11 +43,11 @@ VerifyReport verify_exactly(const Table& table, int points) {
 }
 
 // The first visit is exact for a smooth film whatever the pigment's spectrum; the walks' noise is 2 % of what
-// remains and the interpolation over absorption and angles small.
+// remains. Interpolation on this coarse grid gives up to 2 %; with absorption like that at 510 nm in front it is 20 %.
 TEST(FullSpectrumTable, AgreesWithTheExactModel) {
   for (const Case& c : kCases) {
     const VerifyReport report = verify_exactly(test::baked(recipe_of(c, 0)), 60);
-    EXPECT_LT(report.error.median, 0.015) << c.name;
+    EXPECT_LT(report.error.median, 0.03) << c.name;
     EXPECT_LT(report.error.p99, 0.08) << c.name;
     EXPECT_LT(report.dirac_error_p99, 0.003) << c.name;
     EXPECT_LT(report.reciprocity_max, 1e-9) << c.name;
@@ -81,7 +82,7 @@ TEST(FullSpectrumTable, KeepsNegativeComponents) {
   Rng rng(1, 0);
   for (int i = 0; i < 1000; ++i) {
     const auto sample = bsdf.sample(spherical_direction(0.5, 0), rng);
-    if (sample) EXPECT_TRUE(is_finite(sample->throughput));
+    EXPECT_TRUE(!sample || is_finite(sample->throughput));
   }
 }
 

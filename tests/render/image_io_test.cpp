@@ -3,7 +3,9 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
 #include <gtest/gtest.h>
 
 #include "tests/render/support.h"
@@ -118,6 +120,34 @@ TEST(Png, HasSignatureSizeAndEightBitRgb) {
   EXPECT_EQ(head.substr(0, 8), "\x89PNG\r\n\x1a\n");
   EXPECT_EQ(head.substr(16, 10), std::string("\0\0\x01\x2c\0\0\0\x05\x08\x02", 10));
   EXPECT_EQ(folder.file_count(), 1u);
+}
+
+TEST(Exr, KeepsSignsAndNamesRec709) {
+  const ScratchFolder folder;
+  Image image(1, 1);
+  image.set(0, 0, {-0.25, 0.5, 2});
+  write_exr(folder.file("a.exr"), {image, {}, {}});
+  EXPECT_EQ(read_exr(folder.file("a.exr")).mean.get(0, 0), Rgb(-0.25, 0.5, 2));
+  Imf::InputFile file(folder.file("a.exr").c_str());
+  ASSERT_TRUE(Imf::hasChromaticities(file.header()));
+  const Imf::Chromaticities c = Imf::chromaticities(file.header());
+  EXPECT_EQ(c.red, Imath::V2f(0.64F, 0.33F));
+  EXPECT_EQ(c.green, Imath::V2f(0.30F, 0.60F));
+  EXPECT_EQ(c.blue, Imath::V2f(0.15F, 0.06F));
+  EXPECT_EQ(c.white, Imath::V2f(0.3127F, 0.3290F));
+}
+
+TEST(Png, CountsTheNegativeComponentsItRaises) {
+  const ScratchFolder folder;
+  Image image(2, 1);
+  image.set(0, 0, {-0.25, 0.5, 0.5});
+  image.set(1, 0, {0.5, 0.5, 0.5});
+  const ClipAccount account = write_png(folder.file("a.png"), image);
+  EXPECT_EQ(account.colors, 2);
+  EXPECT_EQ(account.clipped, 1);
+  EXPECT_EQ(account.lowest, -0.25);
+  EXPECT_NEAR(account.luminance_added, 0.25 * 0.2126, 1e-4);
+  EXPECT_EQ(write_png(folder.file("b.png"), numbered(3, 3, 0)).clipped, 0);
 }
 
 TEST(Png, ErrorsNameTheFile) {

@@ -131,4 +131,15 @@ inline Table small_table(Precision precision = Precision::half_float, bool rough
   return table;
 }
 
+// The same with folded spectra.
+inline Table small_full_table() {
+  Table table = small_table();
+  table.first_visit = NdArray("first_visit", {axis("optical_path", {0, 1, 10}, 3)}, Precision::single_float);
+  fill_randomly(table.first_visit, -0.01, 0.5, 4);
+  table.info.merge(std::map<std::string, std::string>{
+      {"color_space", "acescg"}, {"illuminant", "D65"}, {"wavelengths", "400 500 600"}});
+  table.info["spectrum"] = "full";
+  return table;
+}
+
 }  // namespace sunbeam::test

@@ -24,6 +24,7 @@ std::vector<Table> assorted_tables() {
   tables.back().material.transmission = Transmission::straight;
   tables.back().material.absorption_path = AbsorptionPath::product;
   tables.back().material.film_ior = 1.0 / 3 + 1;  // no short decimal
+  tables.push_back(test::small_full_table());
   return tables;
 }
 
@@ -41,7 +42,7 @@ TEST(TableFile, RoundTripIsTheSameTable) {
 
 TEST(TableFile, TablesThatDifferAnywhereAreNotEqual) {
   const Table table = small_table();
-  std::vector<Table> others(7, table);
+  std::vector<Table> others(8, table);
   others[0].material.film_ior += 1e-15;
   others[1].symmetry = Symmetry::anisotropic;
   others[2].film_reflectance.set(4, Rgb(0.77));
@@ -49,6 +50,7 @@ TEST(TableFile, TablesThatDifferAnywhereAreNotEqual) {
   others[4].remainder.set(200, Rgb(0.77));
   others[5].rest_stderr.set(287, Rgb(0.77));
   others[6].info["seed"] = "8";
+  others[7].first_visit = test::small_full_table().first_visit;
   EXPECT_TRUE(table == small_table());
   for (std::size_t k = 0; k < others.size(); ++k) EXPECT_FALSE(others[k] == table) << k;
 }

@@ -40,6 +40,7 @@ class Facets {
   struct Normal {
     V cos_h;   // with the macro normal
     V cosine;  // with w
+    V along;   // component along the tangent towards w
   };
   // With density D_vis(h; w), by spherical caps (Dupuy and Benyoub 2023).
   SUNBEAM_INLINE Normal sample(const V& w, const V& root_w, Rng& rng) const {
@@ -51,7 +52,8 @@ class Facets {
     const V cap_x = x + axis_x, cap_z = max(z + w, V(1e-12) * root_w);
     const V length2 = V(alpha2_) * (ring2 + axis_x * (V(2) * x + axis_x)) + squared(cap_z);
     const V per_length = V(1) / sqrt(length2);
-    return {cap_z * per_length, min((axis_x * cap_x + w * cap_z) * per_length, V(1))};
+    return {cap_z * per_length, min((axis_x * cap_x + w * cap_z) * per_length, V(1)),
+            alpha * cap_x * per_length};
   }
 
  private:
@@ -96,7 +98,7 @@ class Events {
 
   // A facet seen from w; the macro normal of a smooth film.
   SUNBEAM_INLINE Normal meet(const V& w, Rng& rng) const {
-    if (layers_.is_smooth()) return {V(1), w};
+    if (layers_.is_smooth()) return {V(1), w, V(0)};
     return facets_.sample(w, facets_.root(w), rng);
   }
 

@@ -7,6 +7,22 @@ using Lane = walk::Events<double>;
 
 constexpr std::size_t kChunk = 32;  // directions that share one walk; their sums are on the stack
 
+// A direction at this cosine, its azimuth uniform.
+Vec3 any_azimuth(double cosine, Rng& rng) {
+  const double turn = 2 * rng.uniform() - 1, sine = std::sqrt(std::max(0.0, 1 - square(cosine)));
+  const double x = walk::cos_half_turn(std::abs(turn));
+  return {sine * x, std::copysign(sine * std::sqrt(std::max(0.0, 1 - square(x))), turn), cosine};
+}
+
+// The facet in w's frame, on either side of the plane of w and the macro normal.
+Vec3 facet_normal(const Vec3& w, const Lane::Normal& facet, Rng& rng) {
+  const double across2 = 1 - square(facet.along) - square(facet.cos_h);
+  const double across = std::copysign(std::sqrt(std::max(0.0, across2)), rng.uniform() - 0.5);
+  const double sine = std::sqrt(w.x * w.x + w.y * w.y);
+  const double x = sine > 0 ? w.x / sine : 1, y = sine > 0 ? w.y / sine : 0;
+  return {x * facet.along - y * across, y * facet.along + x * across, facet.cos_h};
+}
+
 }  // namespace
 
 Pfmc::Pfmc(const Material& material, const Wavelengths& wavelengths, const walk::Kernels& kernels)
@@ -97,18 +113,17 @@ void Pfmc::add_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, std::spa
 
 std::optional<BsdfSample> Pfmc::sample(const Vec3& wo, Rng& rng) const {
   if (wo.z <= 0) return {};
-  const Vec3 h =
-      layers_.is_smooth() ? Vec3{0, 0, 1} : ggx_.sample_visible(wo, {rng.uniform(), rng.uniform()});
-  const double cosine = std::clamp(dot(wo, h), 0.0, 1.0);
-  Powers power = reflectances(layers_.film, cosine);
+  const Lane events(layers_);
+  const auto facet = events.meet(wo.z, rng);
+  Powers power = reflectances(layers_.film, facet.cosine);
   const double reflect_chance = chance(power);
   if (rng.uniform() < reflect_chance) {
-    const Vec3 wi = reflect(wo, h);
-    if (wi.z <= 0) return {};
-    const double shadowing = layers_.is_smooth() ? 1 : ggx_.g2_over_g1(wo, wi);
-    return BsdfSample{wi, fold(power.data()) * (shadowing / reflect_chance), layers_.is_smooth()};
+    const auto up = events.mirror(wo.z, facet);
+    if (up.weight == 0) return {};
+    return BsdfSample{reflect(wo, facet_normal(wo, facet, rng)),
+                      fold(power.data()) * (up.weight / reflect_chance), layers_.is_smooth()};
   }
-  const auto passage = Lane(layers_).cross(wo.z, {h.z, cosine}, layers_.index_ratio);
+  const auto passage = events.cross(wo.z, facet, layers_.index_ratio);
   if (passage.weight == 0) return {};
   const double share = passage.weight / (1 - reflect_chance);
   for (int k = 0; k < layers_.count; ++k) power[k] = (1 - power[k]) * share;
@@ -116,7 +131,7 @@ std::optional<BsdfSample> Pfmc::sample(const Vec3& wo, Rng& rng) const {
 }
 
 // A walk that reaches the base at `cosine`.
-std::optional<BsdfSample> Pfmc::sample_below(double cosine, Powers throughput, Rng& rng) const {
+std::optional<BsdfSample> Pfmc::sample_below(double cosine, Powers& throughput, Rng& rng) const {
   const Lane events(layers_);
   for (;;) {
     const auto up = events.leave_base(layers_.open_guide, rng);
@@ -132,8 +147,7 @@ std::optional<BsdfSample> Pfmc::sample_below(double cosine, Powers throughput, R
       if (out.weight == 0) return {};
       const double share = out.weight / (1 - reflect_chance);
       for (int k = 0; k < layers_.count; ++k) throughput[k] *= (1 - power[k]) * share;
-      return BsdfSample{direction_from_cosine(out.cosine, 2 * kPi * rng.uniform()), fold(throughput.data()),
-                        false};
+      return BsdfSample{any_azimuth(out.cosine, rng), fold(throughput.data()), false};
     }
     const auto down = events.mirror(up.cosine, facet);
     if (down.weight == 0) return {};

@@ -80,7 +80,7 @@ class Pfmc {
   double chance(const Powers& powers) const;
   Rgb fold(const double* values) const;
   Powers reflectances(const ThinFilm& film, double cosine) const;
-  std::optional<BsdfSample> sample_below(double cosine, Powers throughput, Rng& rng) const;
+  std::optional<BsdfSample> sample_below(double cosine, Powers& throughput, Rng& rng) const;
   double leave_pdf(const Vec3& wi, Rng& rng, double& cosine) const;
 
   walk::Layers layers_;

@@ -51,6 +51,17 @@ Rgb decay_of(const Rgb& start, const Rgb& value) {
 
 }  // namespace
 
+RestFrame::RestFrame(const Material& material, const NdArray& first_visit)
+    : material_(material), scale_(material.radiance_scale()) {
+  if (first_visit.empty()) return;
+  constexpr int kSteps = 1024;  // linear to 1e-5 of a white base, as the array itself
+  for (int i = 0; i < kSteps; ++i) {
+    const double s = static_cast<double>(i) / kSteps;
+    first_visit_.push_back(first_visit.interpolate(std::array{s / (1 - s)}));
+  }
+  first_visit_.push_back(first_visit.interpolate(std::array{first_visit.axes()[0].high()}));
+}
+
 RestFrame::Terms RestFrame::terms(double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const {
   const double m_i = std::max(material_.cosine_below(cos_i), kSmallestCosine);
   const double m_o = std::max(material_.cosine_below(cos_o), kSmallestCosine);
@@ -59,13 +70,20 @@ RestFrame::Terms RestFrame::terms(double cos_i, double cos_o, const Rgb& t_i, co
           Rgb(std::exp(-std::min(material_.optical_depth() * (1 / m_i + 1 / m_o), kLargestDecay)))};
 }
 
+Rgb RestFrame::first_visit(double optical_path) const {
+  const double position = optical_path / (1 + optical_path) * static_cast<double>(first_visit_.size() - 1);
+  const auto lower = std::min(static_cast<std::size_t>(position), first_visit_.size() - 2);
+  const double t = position - static_cast<double>(lower);
+  return (1 - t) * first_visit_[lower] + t * first_visit_[lower + 1];
+}
+
 RestFrame::Terms RestFrame::folded_terms(double m_i, double m_o, const Rgb& t_i, const Rgb& t_o) const {
-  const auto f = [&](double x) { return first_visit_.interpolate(std::array{x}); };
-  const Rgb first_visit = f(-material_.absorption_exponent(m_i, m_o));
+  const Rgb one_visit = first_visit(-material_.absorption_exponent(m_i, m_o));
   const Rgb at_sum = material_.absorption_path == AbsorptionPath::sum
-                         ? first_visit
-                         : f(material_.optical_depth() * (1 / m_i + 1 / m_o));
-  return {scale_ * kept_positive(t_i) * kept_positive(t_o), kInvPi * first_visit, decay_of(f(0), at_sum)};
+                         ? one_visit
+                         : first_visit(material_.optical_depth() * (1 / m_i + 1 / m_o));
+  return {scale_ * kept_positive(t_i) * kept_positive(t_o), kInvPi * one_visit,
+          decay_of(first_visit_.front(), at_sum)};
 }
 
 Rgb RestFrame::decode(const Rgb& remainder, double cos_i, double cos_o, const Rgb& t_i,

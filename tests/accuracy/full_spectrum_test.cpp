@@ -43,8 +43,7 @@ VerifyReport verify_exactly(const Table& table, int points) {
 }
 
 // The first visit is exact for a smooth film whatever the pigment's spectrum; the walks' noise is 2 % of what
-// remains. Interpolation on this coarse grid gives up to 2 %; with absorption like that at 510 nm in front it
-// is 20 %.
+// remains. Interpolation on this coarse grid gives up to 2 %.
 TEST(FullSpectrumTable, AgreesWithTheExactModel) {
   for (const Case& c : kCases) {
     const VerifyReport report = verify_exactly(test::baked(recipe_of(c, 0)), 60);

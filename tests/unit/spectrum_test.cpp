@@ -64,6 +64,20 @@ TEST(Spectrum, AlbedoFoldsBackInEverySpaceAndIlluminant) {
       }
 }
 
+TEST(Spectrum, EveryRec709ColourHasASpectrumAtEveryNumberOfNodes) {
+  for (const double path : {2000.0, 5000.0, 8000.0, 11000.0, 17000.0})
+    for (const auto space : {ColorSpace::rec709, ColorSpace::acescg})
+      for (int corner = 0; corner < 8; ++corner) {
+        const Spectrum spectrum = full(space, path);
+        const Rgb albedo =
+            spectrum.from_rec709({static_cast<double>(corner & 1), static_cast<double>(corner >> 1 & 1),
+                                  static_cast<double>(corner >> 2)});
+        const Wavelengths w =
+            spectrum.wavelengths(thin(transform(albedo, [](double x) { return std::min(x, 1.0); })));
+        expect_near(w.fold(w.albedo), albedo, 1e-8);
+      }
+}
+
 TEST(Spectrum, SpectralAlbedoBelongsToItsFold) {
   Spectrum spectrum = full();
   const Rgb albedo = spectrum.set_albedo(kOrange);

@@ -24,6 +24,7 @@
 #include <array>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "sunbeam/angles.h"
 #include "sunbeam/core/color_space.h"
@@ -92,8 +93,7 @@ struct Table {
 class RestFrame {
  public:
   // `first_visit` as in Table: empty for rgb3.
-  explicit RestFrame(const Material& material, NdArray first_visit = {})
-      : material_(material), scale_(material.radiance_scale()), first_visit_(std::move(first_visit)) {}
+  explicit RestFrame(const Material& material, const NdArray& first_visit = {});
 
   Rgb decode(const Rgb& remainder, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
   Rgb encode(const Rgb& rest, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
@@ -104,12 +104,14 @@ class RestFrame {
     Rgb first_visit;  // in brackets, first term
     Rgb decay;        // in brackets, what the remainder is multiplied by
   };
+  Rgb first_visit(double optical_path) const;
   Terms folded_terms(double m_i, double m_o, const Rgb& t_i, const Rgb& t_o) const;
   Terms terms(double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
 
   Material material_;
   double scale_;
-  NdArray first_visit_;
+  std::vector<Rgb>
+      first_visit_;  // F at even steps of x / (1 + x) from 0 to 1: no search, no root; empty for rgb3
 };
 
 }  // namespace sunbeam

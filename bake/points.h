@@ -25,7 +25,7 @@ enum class Quantity { brdf, albedo, film };
 
 struct PointsSettings {
   Quantity quantity = Quantity::brdf;
-  std::int64_t samples = 10000;           // walks a row (live only), at least 2
+  std::int64_t samples = 10000;           // estimates a row (live only), at least 2
   std::uint64_t seed = 1;                 // row k uses random stream k
   Estimator estimator = Estimator::pfmc;  // live only; exact: rest and albedo by quadrature, stderr 0
 };

@@ -15,8 +15,8 @@
 namespace sunbeam {
 namespace {
 
-constexpr int kFirstBatch = 512;  // walks before the stop rule is asked; doubled until it holds
-constexpr int kMostWalks = 1 << 17;
+constexpr int kFirstBatch = 64;  // estimates before the stop rule is asked; doubled until it holds
+constexpr int kMostEstimates = 1 << 14;
 constexpr double kLowestCosine = 0.01;
 
 std::vector<Axis> rest_axes(const Recipe& recipe) {
@@ -39,7 +39,7 @@ Parameters parameters_at(const std::vector<Axis>& grid, std::size_t index) {
 // Rest and its standard error for one wi and every wo of the table.
 struct Row {
   std::vector<Rgb> value, standard_error;
-  std::uint64_t walks = 0;
+  std::uint64_t estimates = 0;
 };
 
 Row bake_row(const Pfmc& model, const Vec3& wi, const std::vector<Vec3>& wo, double noise, Rng rng) {
@@ -47,18 +47,18 @@ Row bake_row(const Pfmc& model, const Vec3& wi, const std::vector<Vec3>& wo, dou
   std::vector<Rgb> estimate(wo.size());
   Row row;
   for (std::uint64_t target = kFirstBatch;; target *= 2) {
-    for (; row.walks < target; ++row.walks) {
+    for (; row.estimates < target; ++row.estimates) {
       std::fill(estimate.begin(), estimate.end(), Rgb());
       model.add_rest(wi, wo, rng, estimate);
       for (std::size_t k = 0; k < wo.size(); ++k) cells[k].add(estimate[k]);
     }
-    const auto walks = static_cast<double>(row.walks);
-    if (row.walks < kMostWalks &&
-        !std::all_of(cells.begin(), cells.end(), [&](const Cell& c) { return c.is_known(noise, walks); }))
+    const auto count = static_cast<double>(row.estimates);
+    if (row.estimates < kMostEstimates &&
+        !std::all_of(cells.begin(), cells.end(), [&](const Cell& c) { return c.is_known(noise, count); }))
       continue;
     for (const Cell& cell : cells) {
-      row.value.push_back(cell.mean_of(walks));
-      row.standard_error.push_back(cell.standard_error(walks));
+      row.value.push_back(cell.mean_of(count));
+      row.standard_error.push_back(cell.standard_error(count));
     }
     return row;
   }
@@ -115,7 +115,7 @@ class Sweep {
     for (std::size_t i = 0; i < wi_.size(); ++i) {
       rows.push_back(
           bake_row(model, wi_[i], wo_, recipe_.accuracy.noise, Rng(settings_.seed, node * wi_.size() + i)));
-      walks_ += rows.back().walks;
+      walks_ += rows.back().estimates * walk::kLanes;
     }
     average_reciprocal(rows, table_.remainder.axes()[6].size());
     store(node, parameters, material, rows);

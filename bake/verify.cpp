@@ -14,9 +14,9 @@ namespace {
 
 constexpr std::size_t kDirections = 64;  // wo a point
 constexpr int kMostAttempts = 4096;      // to draw them
-constexpr int kFirstWalks = 512;         // a live run; doubled until the expected floor is low enough
+constexpr int kFirstEstimates = 64;      // a live run; doubled until the expected floor is low enough
 constexpr int kBatches = 16;
-constexpr int kMostWalks = 1 << 16;
+constexpr int kMostEstimates = 1 << 13;
 
 double draw(const Axis& axis, Rng& rng) { return lerp(rng.uniform(), axis.low(), axis.high()); }
 
@@ -47,13 +47,14 @@ struct WalkedRest {
 
 // Batches of walks tell the noise of their mean; for a normal one of variance v, E |difference| = 2 sqrt(v /
 // pi).
-WalkedRest walk_rest(const Pfmc& model, const Vec3& wi, const std::vector<Vec3>& wo, int walks, Rng& rng) {
-  const int batch_walks = walks / kBatches;
+WalkedRest walk_rest(const Pfmc& model, const Vec3& wi, const std::vector<Vec3>& wo, int estimates,
+                     Rng& rng) {
+  const int batch_estimates = estimates / kBatches;
   std::vector<Cell> cells(wo.size());
   for (int batch = 0; batch < kBatches; ++batch) {
     std::vector<Rgb> sums(wo.size());
-    for (int k = 0; k < batch_walks; ++k) model.add_rest(wi, wo, rng, sums);
-    for (std::size_t k = 0; k < wo.size(); ++k) cells[k].add(sums[k] / batch_walks);
+    for (int k = 0; k < batch_estimates; ++k) model.add_rest(wi, wo, rng, sums);
+    for (std::size_t k = 0; k < wo.size(); ++k) cells[k].add(sums[k] / batch_estimates);
   }
   WalkedRest rest;
   for (const Cell& cell : cells) {
@@ -91,12 +92,13 @@ class PointCheck {
   // The number of walks follows the expected floor, not the floor itself: stopping at runs that happen to
   // agree would report one that is too low.
   std::vector<Rgb> walked_rest() {
-    for (int walks = kFirstWalks;; walks *= 2) {
-      const WalkedRest live = walk_rest(*model_, wi_, directions_.wo, walks, rng_);
+    for (int estimates = kFirstEstimates;; estimates *= 2) {
+      const WalkedRest live = walk_rest(*model_, wi_, directions_.wo, estimates, rng_);
       const double scale = denominator(live.value);
-      if (weighted(live.expected_difference) / scale > settings_.tolerance_median / 3 && walks < kMostWalks)
+      if (weighted(live.expected_difference) / scale > settings_.tolerance_median / 3 &&
+          estimates < kMostEstimates)
         continue;
-      auto difference = walk_rest(*model_, wi_, directions_.wo, walks, rng_).value;
+      auto difference = walk_rest(*model_, wi_, directions_.wo, estimates, rng_).value;
       for (std::size_t k = 0; k < difference.size(); ++k) difference[k] = live.value[k] - difference[k];
       point_.noise_floor = weighted(difference) / scale;
       return live.value;

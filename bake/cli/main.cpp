@@ -82,7 +82,9 @@ void add_eval(CLI::App& app, EvalOptions& o, int& exit_code) {
   command->add_option("--estimator", o.estimator, "Evaluator of a recipe's rest and albedo")
       ->check(CLI::IsMember({"pfmc", "exact"}));
   add_overrides(command, o.overrides);
-  command->add_option("--samples", o.samples, "Walks a row, live only")->check(whole_number(2, kMostSamples));
+  command
+      ->add_option("--samples", o.samples, "Estimates a row, live only; one of rest is the mean of 16 walks")
+      ->check(whole_number(2, kMostSamples));
   command->add_option("--seed", o.seed, "Random seed; row k uses stream k")->check(whole_number(0, kAnySeed));
   command->callback([&] { exit_code = run_eval(o); });
 }

@@ -13,13 +13,19 @@ namespace {
 template <std::size_t kCount>
 using Square = std::array<std::array<double, kCount>, kCount>;
 
-// Chebyshev coefficients of the polynomial through values at the nodes cos(pi (j + 1/2) / n).
+// Angle of node j: its s is the cosine.
+template <std::size_t kCount>
+double node_angle(std::size_t j) {
+  return kPi * (static_cast<double>(j) + 0.5) / kCount;
+}
+
+// Chebyshev coefficients of the polynomial through values at the nodes.
 template <std::size_t kCount>
 Square<kCount> make_chebyshev_transform() {
   Square<kCount> t;
   for (std::size_t k = 0; k < kCount; ++k)
     for (std::size_t j = 0; j < kCount; ++j)
-      t[k][j] = (k == 0 ? 1.0 : 2.0) / kCount * std::cos(kPi * static_cast<double>(k) * (j + 0.5) / kCount);
+      t[k][j] = (k == 0 ? 1.0 : 2.0) / kCount * std::cos(static_cast<double>(k) * node_angle<kCount>(j));
   return t;
 }
 
@@ -68,7 +74,7 @@ void PanelCurve::fit(double low, double high, const Functions& functions, const 
   const double centre = (low + high) / 2, half = (high - low) / 2;
   std::vector<double> values(kCoefficients * count_), powers(kCoefficients * lanes_);
   for (std::size_t j = 0; j < kCoefficients; ++j)
-    functions(centre + half * std::cos(kPi * (j + 0.5) / kCoefficients),
+    functions(centre + half * std::cos(node_angle<kCoefficients>(j)),
               std::span(values).subspan(j * count_, count_));
   for (std::size_t i = 0; i < count_; ++i) {
     std::array<double, kCoefficients> series{};

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <iostream>
 #include <sstream>
 
@@ -17,14 +19,20 @@ Quantity parse_quantity(const std::string& name) {
 
 bool is_table(const std::string& path) { return extension(path) == ".exr" || extension(path) == ".vdb"; }
 
+void evaluate_recipe(const EvalOptions& options, PointsSettings settings, std::istream& csv,
+                     const std::string& name) {
+  const Material material = load_recipe(options.source, options.overrides).material;
+  if (settings.estimator == Estimator::automatic) settings.estimator = automatic_for_eval(material).estimator;
+  evaluate_points_live(material, csv, name, settings, std::cout);
+  if (settings.quantity != Quantity::film) fmt::print(stderr, "estimator: {}\n", name_of(settings.estimator));
+}
+
 void evaluate(const EvalOptions& options, std::istream& csv, const std::string& name) {
   const PointsSettings settings{parse_quantity(options.quantity), options.samples, options.seed,
                                 estimator_of(options.estimator)};
-  if (!is_table(options.source)) {
-    evaluate_points_live(load_recipe(options.source, options.overrides).material, csv, name, settings,
-                         std::cout);
-    return;
-  }
+  if (!is_table(options.source)) return evaluate_recipe(options, settings, csv, name);
+  if (settings.estimator != Estimator::automatic)
+    throw Error(options.source + ": --estimator is for a recipe, not a table");
   if (!options.overrides.empty()) throw Error(options.source + ": --set changes a recipe, not a table");
   evaluate_points_table(load_table(options.source), csv, name, settings, std::cout);
 }

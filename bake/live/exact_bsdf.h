@@ -21,7 +21,7 @@
 // Const members are safe to share.
 #pragma once
 
-#include <memory>
+#include <array>
 #include <vector>
 
 #include "bake/live/exact.h"

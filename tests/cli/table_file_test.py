@@ -275,9 +275,10 @@ class Damage(TableFileTest):
                 for command in ("info", "verify"):
                     with self.subTest(name=name, command=command):
                         self.refuse(command, name, naming=[name, needle])
-        for command in ("info", "verify"):
+        self.write("tiny.txt", support.TINY_RECIPE)
+        for command, name in (("info", "tiny.txt"), ("verify", "tiny.txt"), ("verify", "tiny.toml")):
             with self.subTest(command=command):
-                self.refuse(command, "tiny.toml", naming=["tiny.toml", ".exr", ".vdb"])
+                self.refuse(command, name, naming=[name, ".exr", ".vdb"])
 
 
 if __name__ == "__main__":

@@ -111,10 +111,10 @@ struct Estimate {
   Rgb value, standard_error;
 };
 
-template <class Walk>
-Estimate mean_of_walks(std::int64_t samples, Walk walk) {
+template <class Call>
+Estimate mean_of_estimates(std::int64_t samples, Call call) {
   Cell cell;
-  for (std::int64_t k = 0; k < samples; ++k) cell.add(walk());
+  for (std::int64_t k = 0; k < samples; ++k) cell.add(call());
   const auto walks = static_cast<double>(samples);
   return {cell.mean_of(walks), cell.standard_error(walks)};
 }
@@ -127,6 +127,7 @@ class LivePoint {
       : point_(point),
         samples_(settings.samples),
         model_(material, wavelengths),
+        technique_(technique_of(settings.estimator)),
         rng_(settings.seed, point.stream) {
     if (settings.estimator == Estimator::exact && settings.quantity != Quantity::film)
       exact_.emplace(material, wavelengths);
@@ -150,16 +151,17 @@ class LivePoint {
 
  private:
   Estimate walked_rest() {
-    return mean_of_walks(samples_, [&] { return model_.estimate_rest(point_.wo, point_.wi, rng_); });
+    return mean_of_estimates(samples_,
+                             [&] { return model_.estimate_rest(point_.wo, point_.wi, rng_, technique_); });
   }
   Rgb walked_pdf() {
-    return mean_of_walks(samples_, [&] { return Rgb(model_.estimate_pdf(point_.wo, point_.wi, rng_)); })
+    return mean_of_estimates(samples_, [&] { return Rgb(model_.estimate_pdf(point_.wo, point_.wi, rng_)); })
         .value;
   }
 
   // The Dirac part exactly, everything else from walks.
   Estimate walked_albedo() {
-    Estimate total = mean_of_walks(samples_, [&] {
+    Estimate total = mean_of_estimates(samples_, [&] {
       const auto sample = model_.sample(point_.wi, rng_);
       return sample && !sample->is_dirac ? sample->throughput : Rgb();
     });
@@ -170,6 +172,7 @@ class LivePoint {
   Point point_;
   std::int64_t samples_;
   Pfmc model_;
+  Technique technique_;
   std::optional<ExactRest> exact_;
   Rng rng_;
 };

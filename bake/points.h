@@ -25,9 +25,10 @@ enum class Quantity { brdf, albedo, film };
 
 struct PointsSettings {
   Quantity quantity = Quantity::brdf;
-  std::int64_t samples = 10000;           // estimates a row (live only), at least 2
-  std::uint64_t seed = 1;                 // row k uses random stream k
-  Estimator estimator = Estimator::pfmc;  // live only; exact: rest and albedo by quadrature, stderr 0
+  std::int64_t samples = 10000;  // estimates a row (live only), at least 2
+  std::uint64_t seed = 1;        // row k uses random stream k
+  // Live only, not automatic. exact: rest and albedo by quadrature, stderr 0.
+  Estimator estimator = Estimator::pfmc;
 };
 
 // `name` is the CSV's, for messages. Throws Error before anything is written if a row is bad.

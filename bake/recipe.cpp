@@ -196,6 +196,8 @@ Recipe parse_recipe(const std::string& text, const std::string& name,
   recipe.accuracy.tolerance_median =
       accuracy.number("tolerance_median", {1e-6, 10}, recipe.accuracy.tolerance_median);
   recipe.accuracy.tolerance_p99 = accuracy.number("tolerance_p99", {1e-6, 10}, recipe.accuracy.tolerance_p99);
+  if (accuracy.choice("estimator", {"unidirectional", "bidirectional"}, 0) == 1)
+    recipe.accuracy.estimator = Estimator::bidirectional;
 
   config.finish();
   recipe.text = config.canonical_text();

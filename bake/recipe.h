@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/estimator.h"
 #include "bake/live/spectrum.h"
 #include "sunbeam/axis.h"
 #include "sunbeam/material.h"
@@ -28,6 +29,7 @@ struct Recipe {
     double noise = 0.005;            // target relative standard error of a tabulated value
     double tolerance_median = 0.01;  // of verify's error
     double tolerance_p99 = 0.05;
+    Estimator estimator = Estimator::pfmc;  // or bidirectional
   } accuracy;
 
   Spectrum spectrum;  // [spectrum], with albedo and absorption_spectrum of [material]

@@ -42,14 +42,15 @@ struct Row {
   std::uint64_t estimates = 0;
 };
 
-Row bake_row(const Pfmc& model, const Vec3& wi, const std::vector<Vec3>& wo, double noise, Rng rng) {
+Row bake_row(const Pfmc& model, Technique technique, const Vec3& wi, const std::vector<Vec3>& wo,
+             double noise, Rng rng) {
   std::vector<Cell> cells(wo.size());
   std::vector<Rgb> estimate(wo.size());
   Row row;
   for (std::uint64_t target = kFirstBatch;; target *= 2) {
     for (; row.estimates < target; ++row.estimates) {
       std::fill(estimate.begin(), estimate.end(), Rgb());
-      model.add_rest(wi, wo, rng, estimate);
+      model.add_rest(wi, wo, rng, estimate, technique);
       for (std::size_t k = 0; k < wo.size(); ++k) cells[k].add(estimate[k]);
     }
     const auto count = static_cast<double>(row.estimates);
@@ -99,7 +100,7 @@ class Sweep {
                    {"recipe_hash", recipe_.hash},
                    {"seed", std::to_string(settings_.seed)},
                    {"samples", std::to_string(walks_.load())},
-                   {"estimator", name_of(Estimator::pfmc)},
+                   {"estimator", name_of(recipe_.accuracy.estimator)},
                    {"tool_version", kToolVersion},
                    {"encoding", recipe_.table.encoding}};
     table_.info.merge(recipe_.spectrum.attributes());
@@ -113,8 +114,8 @@ class Sweep {
     const Pfmc model(material, recipe_.spectrum.wavelengths(material));
     std::vector<Row> rows;
     for (std::size_t i = 0; i < wi_.size(); ++i) {
-      rows.push_back(
-          bake_row(model, wi_[i], wo_, recipe_.accuracy.noise, Rng(settings_.seed, node * wi_.size() + i)));
+      rows.push_back(bake_row(model, technique_of(recipe_.accuracy.estimator), wi_[i], wo_,
+                              recipe_.accuracy.noise, Rng(settings_.seed, node * wi_.size() + i)));
       walks_ += rows.back().estimates * walk::kLanes;
     }
     average_reciprocal(rows, table_.remainder.axes()[6].size());

@@ -47,13 +47,13 @@ struct WalkedRest {
 
 // Batches of walks tell the noise of their mean; for a normal one of variance v, E |difference| = 2 sqrt(v /
 // pi).
-WalkedRest walk_rest(const Pfmc& model, const Vec3& wi, const std::vector<Vec3>& wo, int estimates,
-                     Rng& rng) {
+WalkedRest walk_rest(const Pfmc& model, Technique technique, const Vec3& wi, const std::vector<Vec3>& wo,
+                     int estimates, Rng& rng) {
   const int batch_estimates = estimates / kBatches;
   std::vector<Cell> cells(wo.size());
   for (int batch = 0; batch < kBatches; ++batch) {
     std::vector<Rgb> sums(wo.size());
-    for (int k = 0; k < batch_estimates; ++k) model.add_rest(wi, wo, rng, sums);
+    for (int k = 0; k < batch_estimates; ++k) model.add_rest(wi, wo, rng, sums, technique);
     for (std::size_t k = 0; k < wo.size(); ++k) cells[k].add(sums[k] / batch_estimates);
   }
   WalkedRest rest;
@@ -93,12 +93,14 @@ class PointCheck {
   // agree would report one that is too low.
   std::vector<Rgb> walked_rest() {
     for (int estimates = kFirstEstimates;; estimates *= 2) {
-      const WalkedRest live = walk_rest(*model_, wi_, directions_.wo, estimates, rng_);
+      const WalkedRest live =
+          walk_rest(*model_, technique_of(settings_.truth), wi_, directions_.wo, estimates, rng_);
       const double scale = denominator(live.value);
       if (weighted(live.expected_difference) / scale > settings_.tolerance_median / 3 &&
           estimates < kMostEstimates)
         continue;
-      auto difference = walk_rest(*model_, wi_, directions_.wo, estimates, rng_).value;
+      auto difference =
+          walk_rest(*model_, technique_of(settings_.truth), wi_, directions_.wo, estimates, rng_).value;
       for (std::size_t k = 0; k < difference.size(); ++k) difference[k] = live.value[k] - difference[k];
       point_.noise_floor = weighted(difference) / scale;
       return live.value;

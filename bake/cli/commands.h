@@ -18,7 +18,7 @@ struct BakeOptions {
 int run_bake(const BakeOptions& options);
 
 struct InfoOptions {
-  std::string table;
+  std::string source;  // table or recipe
   bool json = false;
 };
 int run_info(const InfoOptions& options);
@@ -26,7 +26,7 @@ int run_info(const InfoOptions& options);
 struct EvalOptions {
   std::string source, points;
   std::string quantity = "brdf";
-  std::string estimator = "pfmc";
+  std::string estimator = "auto";
   std::vector<std::string> overrides;
   std::int64_t samples = 10000;
   std::uint64_t seed = 1;
@@ -46,6 +46,7 @@ struct RenderOptions {
   std::string scene, output, stats;
   std::string table;  // in place of the scene's own
   std::string material = "table";
+  std::string estimator = "auto";   // of --material live
   std::optional<std::string> size;  // WIDTHxHEIGHT; as the scene says if not given
   int samples_per_pixel = 0;        // 0: as the scene says
   int threads = 0;

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <iostream>
 #include <sstream>
 
@@ -17,29 +19,40 @@ Quantity parse_quantity(const std::string& name) {
 
 bool is_table(const std::string& path) { return extension(path) == ".exr" || extension(path) == ".vdb"; }
 
-void evaluate(const EvalOptions& options, std::istream& csv, const std::string& name) {
+// What made the values, for standard error; empty for a table, which says so itself.
+std::string evaluate_recipe(const EvalOptions& options, PointsSettings settings, std::istream& csv,
+                            const std::string& name) {
+  const Recipe recipe = load_recipe(options.source, options.overrides);
+  if (settings.estimator == Estimator::automatic)
+    settings.estimator = automatic_for_eval(recipe.material).estimator;
+  evaluate_points_live(recipe.material, recipe.spectrum, csv, name, settings, std::cout);
+  return settings.quantity == Quantity::film ? "" : name_of(settings.estimator);
+}
+
+std::string evaluate(const EvalOptions& options, std::istream& csv, const std::string& name) {
   const PointsSettings settings{parse_quantity(options.quantity), options.samples, options.seed,
                                 estimator_of(options.estimator)};
-  if (!is_table(options.source)) {
-    const Recipe recipe = load_recipe(options.source, options.overrides);
-    evaluate_points_live(recipe.material, recipe.spectrum, csv, name, settings, std::cout);
-    return;
-  }
+  if (!is_table(options.source)) return evaluate_recipe(options, settings, csv, name);
+  if (settings.estimator != Estimator::automatic)
+    throw Error(options.source + ": --estimator is for a recipe, not a table");
   if (!options.overrides.empty()) throw Error(options.source + ": --set changes a recipe, not a table");
   evaluate_points_table(load_table(options.source), csv, name, settings, std::cout);
+  return "";
 }
 
 }  // namespace
 
 int run_eval(const EvalOptions& options) {
   std::ios::sync_with_stdio(false);
+  std::string estimator;
   if (options.points == "-") {
-    evaluate(options, std::cin, "standard input");
+    estimator = evaluate(options, std::cin, "standard input");
   } else {
     std::istringstream file(read_file(options.points));
-    evaluate(options, file, options.points);
+    estimator = evaluate(options, file, options.points);
   }
   if (!std::cout.flush()) throw Error("standard output: cannot write");
+  if (!estimator.empty()) fmt::print(stderr, "estimator: {}\n", estimator);
   return 0;
 }
 

@@ -4,6 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/cli/commands.h"
+#include "bake/estimator.h"
+#include "bake/recipe.h"
+#include "sunbeam/core/file.h"
 #include "sunbeam/core/text.h"
 #include "sunbeam/table_vdb.h"
 
@@ -54,11 +57,36 @@ void print_text(const Json& json, const Table& table) {
   fmt::print("recipe\n{}\n", json["recipe"].get<std::string>());
 }
 
+Json describe(const EstimatorChoice& choice) {
+  return {{"estimator", name_of(choice.estimator)}, {"reason", choice.reason}};
+}
+
+// What `auto` takes for a recipe.
+int run_info_of_recipe(const InfoOptions& options) {
+  const Recipe recipe = load_recipe(options.source);
+  Json json;
+  json["recipe_hash"] = recipe.hash;
+  json["spectrum"] = recipe.spectrum;
+  json["eval"] = describe(automatic_for_eval(recipe.material));
+  json["render"] = describe(automatic_for_render(recipe.material));
+  if (options.json) {
+    fmt::print("{}\n", json.dump(2));
+    return 0;
+  }
+  for (const auto& [key, value] : json.items())
+    fmt::print("{:<16}{}\n", key,
+               value.is_string() ? value.get<std::string>()
+                                 : fmt::format("{}: {}", value["estimator"].get<std::string>(),
+                                               value["reason"].get<std::string>()));
+  return 0;
+}
+
 }  // namespace
 
 int run_info(const InfoOptions& options) {
-  const Table table = load_table(options.table);
-  const Json json = describe(table, options.table);
+  if (extension(options.source) == ".toml") return run_info_of_recipe(options);
+  const Table table = load_table(options.source);
+  const Json json = describe(table, options.source);
   if (options.json)
     fmt::print("{}\n", json.dump(2));
   else

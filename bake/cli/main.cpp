@@ -64,8 +64,9 @@ void add_bake(CLI::App& app, BakeOptions& o, int& exit_code) {
 }
 
 void add_info(CLI::App& app, InfoOptions& o, int& exit_code) {
-  CLI::App* command = add_command(app, "info", "Show what a table holds", "sunbeam info skin.exr --json");
-  command->add_option("table", o.table, "Table (.exr or .vdb)")->required();
+  CLI::App* command = add_command(app, "info", "Show what a table holds, or how a recipe is evaluated live",
+                                  "sunbeam info skin.exr --json");
+  command->add_option("source", o.source, "Table (.exr, .vdb) or recipe (.toml)")->required();
   command->add_flag("--json", o.json, "As JSON");
   command->callback([&] { exit_code = run_info(o); });
 }
@@ -79,11 +80,14 @@ void add_eval(CLI::App& app, EvalOptions& o, int& exit_code) {
   command->add_option("--points", o.points, "CSV file, or - for standard input")->required();
   command->add_option("--quantity", o.quantity, "What to evaluate")
       ->check(CLI::IsMember({"brdf", "albedo", "film"}));
-  command->add_option("--estimator", o.estimator, "Evaluator of a recipe's rest and albedo")
-      ->check(CLI::IsMember({"pfmc", "exact"}));
+  command
+      ->add_option("--estimator", o.estimator,
+                   "Evaluator of a recipe's rest and albedo; auto: see sunbeam info RECIPE")
+      ->check(CLI::IsMember({"auto", "pfmc", "bidirectional", "exact"}));
   add_overrides(command, o.overrides);
   command
-      ->add_option("--samples", o.samples, "Estimates a row, live only; one of rest is the mean of 16 walks")
+      ->add_option("--samples", o.samples,
+                   "Estimates a row of PFMC and of pdf; one of PFMC's is the mean of 16 walks")
       ->check(whole_number(2, kMostSamples));
   command->add_option("--seed", o.seed, "Random seed; row k uses stream k")->check(whole_number(0, kAnySeed));
   command->callback([&] { exit_code = run_eval(o); });
@@ -95,7 +99,8 @@ void add_verify(CLI::App& app, VerifyOptions& o, int& exit_code) {
                   "sunbeam verify skin.exr --json report.json");
   command->add_option("table", o.table, "Table (.exr or .vdb)")->required();
   command->add_option("--points", o.points, "Random points")->check(whole_number(1, 100000000));
-  command->add_option("--truth", o.truth, "What to hold it against")->check(CLI::IsMember({"pfmc", "exact"}));
+  command->add_option("--truth", o.truth, "What to hold it against")
+      ->check(CLI::IsMember({"pfmc", "bidirectional", "exact"}));
   command->add_option("--json", o.json, "Write the figures to this file");
   add_threads(command, o.threads);
   command->add_option("--seed", o.seed, "Random seed; point k uses stream k")
@@ -111,6 +116,8 @@ void add_render(CLI::App& app, RenderOptions& o, int& exit_code) {
   command->add_option("-o,--output", o.output, "Image to write (.exr); a .png goes beside it")->required();
   command->add_option("--material", o.material, "Skin material")
       ->check(CLI::IsMember({"table", "live", "diffuse"}));
+  command->add_option("--estimator", o.estimator, "Evaluator of --material live; auto: exact where it can")
+      ->check(CLI::IsMember({"auto", "pfmc", "bidirectional", "exact"}));
   command->add_option("--table", o.table, "Table to use in place of the scene's own");
   command->add_option("--size", o.size, "WIDTHxHEIGHT in pixels");
   command->add_option("--spp", o.samples_per_pixel, "Samples per pixel")->check(whole_number(1, 1 << 24));

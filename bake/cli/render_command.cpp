@@ -1,13 +1,17 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <charconv>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
 #include "bake/cli/commands.h"
 #include "bake/cli/progress.h"
+#include "bake/estimator.h"
+#include "bake/live/exact_bsdf.h"
 #include "bake/live/live_bsdf.h"
 #include "bake/recipe.h"
 #include "bake/version.h"
@@ -68,20 +72,16 @@ std::unique_ptr<Bsdf> table_skin(const Table& table, const SceneMaterial& skin,
   }
 }
 
-std::unique_ptr<Bsdf> live_skin(const Recipe& recipe, const SceneMaterial& skin,
-                                const std::string& scene_path) {
-  const Material material = skin_material(skin, recipe.material);
-  try {
-    return std::make_unique<LiveBsdf>(material, recipe.spectrum.wavelengths(material));
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: material '{}': {}", scene_path, skin.name, error.what()));
-  }
+std::unique_ptr<Bsdf> live_skin(const Material& material, const Spectrum& spectrum, Estimator estimator) {
+  const Wavelengths wavelengths = spectrum.wavelengths(material);
+  if (estimator == Estimator::exact) return std::make_unique<ExactBsdf>(material, wavelengths);
+  return std::make_unique<LiveBsdf>(material, wavelengths, technique_of(estimator));
 }
 
 // One BSDF for each material of the scene.
 class Materials {
  public:
-  Materials(const Scene& scene, const std::string& scene_path, const std::string& mode) {
+  Materials(const Scene& scene, const std::string& scene_path, const std::string& mode, Estimator estimator) {
     std::optional<Table> table;
     std::optional<Recipe> recipe;
     for (const SceneMaterial& m : scene.materials) {
@@ -93,7 +93,8 @@ class Materials {
         if (scene.recipe.empty())
           throw Error(scene_path + ": key 'recipe' is missing; --material live needs it");
         if (!recipe) recipe = load_recipe(scene.recipe);
-        add_skin(live_skin(*recipe, m, scene_path), recipe->spectrum.color_space());
+        add_live(skin_material(m, recipe->material), recipe->spectrum, estimator,
+                 scene_path + ": material '" + m.name + "': ");
       } else {
         if (!table) table = load_scene_table(scene, scene_path);
         add_skin(table_skin(*table, m, scene_path), table->color_space());
@@ -104,8 +105,20 @@ class Materials {
 
   std::span<const Bsdf* const> bsdfs() const { return pointers_; }
   const std::string& table_hash() const { return table_hash_; }
+  // The live skins' evaluators, by name; empty if there are none.
+  std::string estimators() const { return fmt::format("{}", fmt::join(estimators_, ", ")); }
 
  private:
+  void add_live(const Material& material, const Spectrum& spectrum, Estimator wanted,
+                const std::string& where) {
+    try {
+      const Estimator estimator = estimator_for_render(wanted, material);
+      add_skin(live_skin(material, spectrum, estimator), spectrum.color_space());
+      estimators_.insert(name_of(estimator));
+    } catch (const Error& error) {
+      throw Error(where + error.what());
+    }
+  }
   void add(std::unique_ptr<Bsdf> bsdf) {
     pointers_.push_back(bsdf.get());
     owned_.push_back(std::move(bsdf));
@@ -121,9 +134,10 @@ class Materials {
   std::vector<std::unique_ptr<Bsdf>> owned_;
   std::vector<const Bsdf*> pointers_;
   std::string table_hash_;
+  std::set<std::string> estimators_;
 };
 
-std::string stats_json(const RenderStats& s) {
+std::string stats_json(const RenderStats& s, const std::string& estimators) {
   nlohmann::ordered_json json;
   json["seconds"] = s.seconds;
   json["cpu_seconds"] = s.cpu_seconds;
@@ -133,6 +147,7 @@ std::string stats_json(const RenderStats& s) {
   json["samples_per_second"] = s.samples_per_second;
   json["peak_rss_mb"] = s.peak_rss_mb;
   json["bad_samples"] = s.bad_samples;
+  if (!estimators.empty()) json["estimator"] = estimators;
   return json.dump(2) + "\n";
 }
 
@@ -162,7 +177,10 @@ int run_render(const RenderOptions& options) {
   }
   Scene scene = load_scene(options.scene);
   if (!options.table.empty()) scene.table = options.table;
-  const Materials materials(scene, options.scene, options.material);
+  if (options.estimator != "auto" && options.material != "live")
+    throw Error("--estimator: found '" + options.estimator + "' with --material " + options.material +
+                "; allowed with --material live");
+  const Materials materials(scene, options.scene, options.material, estimator_of(options.estimator));
   const std::string png = std::filesystem::path(options.output).replace_extension(".png").string();
   for (const auto& path : {options.output, png}) require_writable(path);
   if (!options.stats.empty()) require_writable(options.stats);
@@ -177,13 +195,16 @@ int run_render(const RenderOptions& options) {
                              result.variance,
                              {{"sunbeam.scene", options.scene},
                               {"sunbeam.material", options.material},
+                              {"sunbeam.estimator", materials.estimators()},
                               {"sunbeam.recipe_hash", materials.table_hash()},
                               {"sunbeam.seed", std::to_string(options.seed)},
                               {"sunbeam.tool_version", kToolVersion}}});
   report_clipping(png, write_png(png, result.mean));
-  if (!options.stats.empty()) write_file_atomically(options.stats, stats_json(result.stats));
+  if (!options.stats.empty())
+    write_file_atomically(options.stats, stats_json(result.stats, materials.estimators()));
   if (result.stats.bad_samples > 0)
     fmt::print(stderr, "warning: {} samples were not finite and count as black\n", result.stats.bad_samples);
+  if (!materials.estimators().empty()) fmt::print(stderr, "estimator: {}\n", materials.estimators());
   fmt::print(stderr, "{} and {}: {:.2f} s, {:.3g} samples/s\n", options.output, png, result.stats.seconds,
              result.stats.samples_per_second);
   return 0;

@@ -138,10 +138,7 @@ ExactRest::ExactRest(const Material& material, const Wavelengths& wavelengths,
                      const ExactResolution& resolution)
     : wavelengths_(wavelengths) {
   for (std::size_t first = 0; first < wavelengths.size(); first += 3) {
-    const auto of = [&](const std::vector<double>& values) {
-      const std::size_t last = values.size() - 1;
-      return Rgb(values[first], values[std::min(first + 1, last)], values[std::min(first + 2, last)]);
-    };
+    const auto of = [&](const std::vector<double>& values) { return wavelengths.triple(values, first); };
     triples_.emplace_back(material, of(wavelengths.nm), of(wavelengths.albedo), of(wavelengths.absorption),
                           resolution);
   }

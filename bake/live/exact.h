@@ -14,8 +14,9 @@
 // 1500 nm, tau up to 2, values above 1e-12):
 //   smooth film  4e-8 at most;
 //   rough film   1e-5 typically, 2e-4 at most, 3e-4 for n2 within 0.1 % of n0; 1e-3 for films of 20 um;
-//   rough film that bends light into a lower index (n2 < n0)  1e-3 typically, 1e-2 at most: light that grazes
-//   the base is cut off by the pigment more steeply than the nodes follow.
+//   rough film over a lower index (n2 < n0 <= 2)  1e-7 typically, 1e-3 at most (400 materials of its own);
+//   the nodes follow the directions refracted to grazing the base, and a film of lower index that light
+//   tunnels.
 // Values below 1e-20, deep in the pigment at grazing angles, may lose all relative precision.
 //
 // Wavelengths are independent and worked through three at a time. Times on one core for 3 wavelengths (20):

@@ -27,23 +27,34 @@ void for_each_node(const std::array<double, kCount>& edges, const GaussRule& rul
   }
 }
 
-// Cosine of total reflection as seen from the film's exterior; 0 if there is none.
-double critical_cosine(const ThinFilm& film) {
-  return std::sqrt(std::max(0.0, 1 - square(film.base_ior / film.exterior_ior)));
+// Cosine of total reflection; 0 if there is none.
+double critical_cosine(double ior_from, double ior_to) {
+  return std::sqrt(std::max(0.0, 1 - square(ior_to / ior_from)));
 }
+
+// As seen from the film's exterior.
+double critical_cosine(const ThinFilm& film) { return critical_cosine(film.exterior_ior, film.base_ior); }
 
 // The normals visible from w (azimuth 0), by stretching the surface to roughness 1, where their density over
 // half the angle between w and its mirror image is uniform (Heitz 2018): polar angle about the stretched w,
-// azimuth towards the horizon nearest to it. A normal's cosine with w is |stretched w| cos(polar) / |k|, with
-// k = k0 cos(polar) + k1(azimuth) sin(polar) the normal before normalisation.
+// azimuth towards the horizon nearest to it. A normal is k / |k|, k = k0 + k1(azimuth) tan(polar), and curves
+// cross the normals where what the light does changes abruptly:
+//   cones      w.k = c |k|: total reflection at the base, and at the film where light tunnels beyond it;
+//   rim        m.z = 0 for light refracted to k ~ ratio w - m, ratio = n0 / n2 > 1. In slopes k.x / k.z and
+//              k.y / k.z a circle about w, so a quadratic in tan(polar). Only its arc with m.k > 0 is real;
+//              the rest costs a few nodes and no error.
 class VisibleNormals {
  public:
-  VisibleNormals(const Vec3& w, double alpha, double critical)
+  VisibleNormals(const Vec3& w, double alpha, const ThinFilm& film, double ratio)
       : w_(w),
         alpha_(alpha),
-        critical_(critical),
+        cones_{critical_cosine(film.exterior_ior, film.base_ior),
+               critical_cosine(film.exterior_ior, film.film_ior)},
+        ratio_(ratio),
         stretched_length_(std::hypot(alpha * w.x, w.z)),
-        axis_{alpha * w.x / stretched_length_, 0, w.z / stretched_length_} {}
+        axis_{alpha * w.x / stretched_length_, 0, w.z / stretched_length_} {
+    if (cones_[1] <= cones_[0]) cones_[1] = 0;  // the base reflects all there
+  }
 
   Vec3 normal(double polar, double azimuth) const {
     const Vec3 k = std::cos(polar) * k0() + std::sin(polar) * k1(azimuth);
@@ -53,35 +64,34 @@ class VisibleNormals {
   // Over polar angle and azimuth in [0, pi].
   double density(double polar) const { return 2 * std::sin(2 * polar) / (kPi * (1 + axis_.z)); }
 
-  // Azimuths between which the bounds of polar_edges() are smooth: the horizon is met up to pi / 2, the cone
-  // of total reflection is touched by, and leaves the horizon at, one azimuth each.
-  std::array<double, 5> azimuth_edges() const {
-    std::array<double, 5> edges{0, kPi / 2, kPi, 0, 0};
-    const double outside = dot(k0(), k0()) - square(stretched_length_ / critical_);
-    if (critical_ > 0 && outside > 0) {
-      const double slope = square(axis_.x) * (1 - square(alpha_));
-      const double cos2 =
-          outside * square(alpha_) / (square(axis_.z) * slope * (1 - square(alpha_)) - outside * slope);
-      if (cos2 > 0 && cos2 < 1) edges[3] = std::acos(std::sqrt(cos2));
+  // Azimuths between which the bounds of polar_edges() are smooth: the horizon is met up to pi / 2, a cone is
+  // touched by, and leaves the horizon at, one azimuth each, the rim is touched and ends at one each.
+  std::array<double, 9> azimuth_edges() const {
+    std::array<double, 9> edges{0, kPi / 2, kPi};
+    for (std::size_t k = 0; k < cones_.size(); ++k) {
+      edges[3 + 2 * k] = cone_tangent(cones_[k]);
+      edges[4 + 2 * k] = cone_end(cones_[k]);
     }
-    if (critical_ > 0 && w_.x > critical_) {
-      const double cosine = critical_ / w_.x;
-      edges[4] = std::atan2(std::sqrt(1 - square(cosine)), cosine * axis_.z);
+    if (meets_rim()) {
+      edges[7] = rim_tangent();
+      edges[8] = rim_end();
     }
     std::sort(edges.begin(), edges.end());
     return edges;
   }
 
-  // 0, where total reflection ends and begins again, the horizon; ascending.
-  std::array<double, 4> polar_edges(double azimuth) const {
+  // 0, where the cones and the rim begin and end, the horizon; ascending.
+  std::array<double, 8> polar_edges(double azimuth) const {
     const double end = std::atan2(axis_.z, std::max(0.0, axis_.x * std::cos(azimuth)));
-    std::array<double, 4> edges{0, 0, end, end};
-    if (critical_ == 0) return edges;
-    const double a = dot(k1(azimuth), k1(azimuth)), b = dot(k0(), k1(azimuth));
-    const double discriminant = b * b - a * (dot(k0(), k0()) - square(stretched_length_ / critical_));
-    const double root = std::sqrt(std::max(0.0, discriminant));
-    edges[1] = std::clamp(std::atan((-b - root) / a), 0.0, end);
-    edges[2] = std::clamp(std::atan((-b + root) / a), 0.0, end);
+    std::array<double, 8> edges{0, end};
+    const Vec3 a = k0(), b = k1(azimuth);
+    int count = 2;
+    for (const double cone : cones_)
+      if (cone > 0)
+        cut({dot(a, a) - square(stretched_length_ / cone), dot(a, b), dot(b, b)}, end, &edges[count]),
+            count += 2;
+    if (meets_rim()) cut(rim(a, b), end, &edges[count]);
+    std::sort(edges.begin(), edges.end());
     return edges;
   }
 
@@ -96,14 +106,69 @@ class VisibleNormals {
   }
 
  private:
+  // c + 2 b t + a t^2, t = tan(polar).
+  struct Quadratic {
+    double c, b, a;
+  };
+
   Vec3 k0() const { return {alpha_ * axis_.x, 0, axis_.z}; }
   Vec3 k1(double azimuth) const {
     const double c = std::cos(azimuth);
     return {alpha_ * c * axis_.z, alpha_ * std::sin(azimuth), -c * axis_.x};
   }
 
+  // The two roots as polar angles inside [0, end]; twice the nearest to one if there is none.
+  static void cut(const Quadratic& q, double end, double* edges) {
+    const auto polar = [&](double tangent) { return tangent > 0 ? std::min(std::atan(tangent), end) : 0; };
+    const double root = std::sqrt(std::max(0.0, square(q.b) - q.a * q.c));
+    const double larger = -(q.b + std::copysign(root, q.b));
+    edges[0] = polar(larger / q.a);
+    edges[1] = root > 0 ? polar(q.c / larger) : edges[0];
+  }
+
+  double cone_tangent(double cone) const {
+    const double outside = dot(k0(), k0()) - square(stretched_length_ / cone);
+    if (cone == 0 || outside <= 0) return 0;
+    const double slope = square(axis_.x) * (1 - square(alpha_));
+    const double cos2 =
+        outside * square(alpha_) / (square(axis_.z) * slope * (1 - square(alpha_)) - outside * slope);
+    return cos2 > 0 && cos2 < 1 ? std::acos(std::sqrt(cos2)) : 0;
+  }
+  double cone_end(double cone) const {
+    if (cone == 0 || w_.x <= cone) return 0;
+    const double cosine = cone / w_.x;
+    return std::atan2(std::sqrt(1 - square(cosine)), cosine * axis_.z);
+  }
+
+  bool meets_rim() const { return ratio_ * w_.x > 1; }
+  // (k.x w.z - k.z w.x)^2 + (k.y w.z)^2 - (k.z / ratio)^2 along k = a + b t; a.y = 0.
+  Quadratic rim(const Vec3& a, const Vec3& b) const {
+    const auto tilt = [&](const Vec3& k) { return k.x * w_.z - k.z * w_.x; };
+    const double za = a.z / ratio_, zb = b.z / ratio_;
+    return {square(tilt(a)) - square(za), tilt(a) * tilt(b) - za * zb,
+            square(tilt(b)) + square(b.y * w_.z) - square(zb)};
+  }
+  // Where the discriminant of rim() vanishes: b^2 = a c at azimuth 0 grows like cos^2 on the left, and the
+  // right gains (alpha w.z)^2 sin^2.
+  double rim_tangent() const {
+    const Quadratic q = rim(k0(), k1(0));
+    if (q.c <= 0) return 0;
+    const double azimuth =
+        std::atan(std::sqrt(std::max(0.0, square(q.b) - q.a * q.c) / q.c) / (alpha_ * w_.z));
+    return q.b < 0 ? azimuth : kPi - azimuth;
+  }
+  // Where the real arc ends on the cone of total reflection: ratio w.m = 1.
+  double rim_end() const {
+    const double cosine = 1 / (ratio_ * w_.x);
+    const Vec3 stretched{(ratio_ * w_.x - cosine) / alpha_, std::sqrt(1 - square(cosine)) / alpha_,
+                         ratio_ * w_.z};
+    return std::atan2(stretched.y, axis_.z * stretched.x - axis_.x * stretched.z);
+  }
+
   Vec3 w_;
-  double alpha_, critical_, stretched_length_;
+  double alpha_;
+  std::array<double, 2> cones_;
+  double ratio_, stretched_length_;
   Vec3 axis_;
 };
 
@@ -152,7 +217,7 @@ int FilmIntegrals::visible_nodes() const {
 template <class F>
 void FilmIntegrals::visit_visible(const Vec3& w, bool only_mirrored, F visit) const {
   const Vec3 from = direction_from_cosine(w.z, 0);
-  const VisibleNormals visible(from, ggx_.alpha(), critical_cosine(film_));
+  const VisibleNormals visible(from, ggx_.alpha(), film_, index_ratio_);
   for_each_node(visible.azimuth_edges(), visible_azimuths_, [&](double azimuth, double dazimuth) {
     auto edges = visible.polar_edges(azimuth);
     const double end = only_mirrored ? visible.mirrored_end(azimuth, edges.back()) : edges.back();

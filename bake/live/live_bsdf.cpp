@@ -4,8 +4,12 @@
 
 namespace sunbeam {
 
-LiveBsdf::LiveBsdf(const Material& material, const Wavelengths& wavelengths)
-    : pfmc_(material, wavelengths), ggx_(material.roughness), share_{}, transmitted_cosine_(0) {
+LiveBsdf::LiveBsdf(const Material& material, const Wavelengths& wavelengths, Technique technique)
+    : pfmc_(material, wavelengths),
+      ggx_(material.roughness),
+      technique_(technique),
+      share_{},
+      transmitted_cosine_(0) {
   for (int k = 0; k < pfmc_.wavelengths(); ++k) share_[k + 1] = share_[k] + pfmc_.importance(k);
   for (int i = 0; i <= kChances; ++i)
     reflect_chance_[i] = pfmc_.reflect_chance(static_cast<double>(i) / kChances);
@@ -33,7 +37,7 @@ auto LiveBsdf::with_heroes(Rng& rng, Use use) const {
 Rgb LiveBsdf::eval(const Vec3& wo, const Vec3& wi, Rng& rng) const {
   if (wo.z <= 0 || wi.z <= 0) return {};
   return pfmc_.first(wo, wi) +
-         with_heroes(rng, [&](const Pfmc& model) { return model.estimate_rest(wo, wi, rng); });
+         with_heroes(rng, [&](const Pfmc& model) { return model.estimate_rest(wo, wi, rng, technique_); });
 }
 
 std::optional<BsdfSample> LiveBsdf::sample(const Vec3& wo, Rng& rng) const {

@@ -14,7 +14,8 @@ class LiveBsdf final : public Bsdf {
  public:
   static constexpr int kHeroes = 4;
 
-  LiveBsdf(const Material& material, const Wavelengths& wavelengths);
+  LiveBsdf(const Material& material, const Wavelengths& wavelengths,
+           Technique technique = Technique::unidirectional);
   // The paper's three wavelengths.
   explicit LiveBsdf(const Material& material) : LiveBsdf(material, Wavelengths::rgb3(material)) {}
 
@@ -36,6 +37,7 @@ class LiveBsdf final : public Bsdf {
 
   Pfmc pfmc_;
   Ggx ggx_;
+  Technique technique_;
   std::array<double, kChances + 1> reflect_chance_;
   std::array<double, kMostWavelengths + 1> share_;  // cumulative, of the wavelengths
   double transmitted_cosine_;                       // Int T(w) cos(w) dw

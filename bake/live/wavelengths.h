@@ -1,6 +1,7 @@
 // The wavelengths that a live model carries, the base at each of them, and how they fold into linear RGB.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,13 @@ struct Wavelengths {
     Rgb sum;
     for (std::size_t k = 0; k < size(); ++k) sum += values[k] * weight[k];
     return sum;
+  }
+
+  // Three of `values` (one of the lists above) from `first` on, for what works on three at a time; beyond the
+  // end the last is repeated.
+  Rgb triple(const std::vector<double>& values, std::size_t first) const {
+    const std::size_t last = size() - 1;
+    return {values[first], values[std::min(first + 1, last)], values[std::min(first + 2, last)]};
   }
 
   // The paper's three wavelengths, 650, 510 and 475 nm, taken as linear R, G, B; albedo likewise.

@@ -2,18 +2,13 @@
 
 #include <array>
 
+#include "bake/optics/vector_clones.h"
+
 namespace sunbeam {
 namespace {
 
 // Wavelengths are worked on side by side in fixed arrays that the compiler turns into vector instructions;
-// the fourth lane repeats the third. The AVX2 clone is chosen at load time and gives the same bits, since
-// neither reorders nor fuses operations.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-#define SUNBEAM_VECTOR_CLONES __attribute__((target_clones("default", "avx2")))
-#else
-#define SUNBEAM_VECTOR_CLONES
-#endif
-
+// the fourth lane repeats the third.
 constexpr int kLanes = 4;
 using Lanes = std::array<double, kLanes>;
 

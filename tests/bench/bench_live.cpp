@@ -9,6 +9,7 @@
 #include <benchmark/benchmark.h>
 #include <time.h>
 
+#include "bake/live/exact_bsdf.h"
 #include "bake/live/live_bsdf.h"
 #include "tests/support/plain_walk.h"
 
@@ -136,6 +137,28 @@ void deterministic_pdf(benchmark::State& state) {
             [&] { return bsdf.mis_pdf(wo, direction_from_cosine(0.1 + 0.9 * rng.uniform(), 2)); });
 }
 BENCHMARK(deterministic_pdf)->Arg(0)->Arg(1)->Arg(2)->ArgName("roughness")->UseManualTime();
+
+void exact_eval(benchmark::State& state) {
+  const Material material = coated_diffuse(kRoughness[state.range(0)]);
+  const ExactBsdf bsdf(material, one_channel(material));
+  const Vec3 wo = spherical_direction(1, 0);
+  Rng rng(3, 0);
+  time_call(state, material,
+            [&] { return bsdf.eval(wo, direction_from_cosine(0.1 + 0.9 * rng.uniform(), 2), rng).g; });
+}
+BENCHMARK(exact_eval)->Arg(0)->Arg(1)->Arg(2)->ArgName("roughness")->UseManualTime();
+
+void exact_sample(benchmark::State& state) {
+  const Material material = coated_diffuse(kRoughness[state.range(0)]);
+  const ExactBsdf bsdf(material, one_channel(material));
+  const Vec3 wo = spherical_direction(1, 0);
+  Rng rng(3, 0);
+  time_call(state, material, [&] {
+    const auto sampled = bsdf.sample(wo, rng);
+    return sampled ? sampled->throughput.g : 0;
+  });
+}
+BENCHMARK(exact_sample)->Arg(0)->Arg(1)->Arg(2)->ArgName("roughness")->UseManualTime();
 
 }  // namespace
 }  // namespace sunbeam

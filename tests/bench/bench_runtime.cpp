@@ -1,9 +1,11 @@
-// Nanoseconds per call of a table bound to one parameter point, of the live model at the same point, and of
-// Lambert as the yardstick, over the same random directions. Run: build/release/bin/bench_runtime
+// Nanoseconds per call of a table bound to one parameter point, of the live model at the same point, by walks
+// and exactly, and of Lambert as the yardstick, over the same random directions. Run:
+// build/release/bin/bench_runtime
 #include <benchmark/benchmark.h>
 
 #include <vector>
 
+#include "bake/live/exact_bsdf.h"
 #include "bake/live/live_bsdf.h"
 #include "sunbeam/lambert.h"
 #include "sunbeam/table_bsdf.h"
@@ -41,6 +43,11 @@ const Bsdf& live_bsdf() {
   return bsdf;
 }
 
+const Bsdf& exact_bsdf() {
+  static const ExactBsdf bsdf(table().material, Wavelengths::rgb3(table().material));
+  return bsdf;
+}
+
 const Bsdf& lambert_bsdf() {
   static const Lambert bsdf(Rgb(0.5));
   return bsdf;
@@ -74,12 +81,15 @@ void sample(benchmark::State& state, const Bsdf& bsdf) {
 
 BENCHMARK_CAPTURE(eval, lambert, lambert_bsdf());
 BENCHMARK_CAPTURE(eval, table, table_bsdf());
+BENCHMARK_CAPTURE(eval, exact, exact_bsdf());
 BENCHMARK_CAPTURE(eval, live, live_bsdf());
 BENCHMARK_CAPTURE(mis_pdf, lambert, lambert_bsdf());
 BENCHMARK_CAPTURE(mis_pdf, table, table_bsdf());
+BENCHMARK_CAPTURE(mis_pdf, exact, exact_bsdf());
 BENCHMARK_CAPTURE(mis_pdf, live, live_bsdf());
 BENCHMARK_CAPTURE(sample, lambert, lambert_bsdf());
 BENCHMARK_CAPTURE(sample, table, table_bsdf());
+BENCHMARK_CAPTURE(sample, exact, exact_bsdf());
 BENCHMARK_CAPTURE(sample, live, live_bsdf());
 
 }  // namespace

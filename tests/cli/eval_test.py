@@ -7,7 +7,9 @@ import unittest
 import support
 
 ANGLES = "theta_i_deg,theta_o_deg,phi_deg"
-SAMPLES = ("--samples", "50")
+WALKS = ("--estimator", "pfmc", "--samples")
+SAMPLES = (*WALKS, "50")
+NAMED = "estimator: {}\n"
 
 COLOURS = ("_r", "_g", "_b")
 
@@ -40,7 +42,8 @@ class EvalTest(support.CliTest):
                     lines = points.splitlines()
                     text = "\n".join([header + lines[0], row + lines[1], row + lines[2]]) + "\n"
                     result = self.evaluate(source, text, "--quantity", quantity, *options)
-                    self.assertEqual(result.err, "")
+                    walked = source.endswith(".toml") and quantity != "film"
+                    self.assertEqual(result.err, NAMED.format("pfmc-unidirectional") if walked else "")
                     out = result.out.split("\n")
                     self.assertEqual(out[0].split(","), (header + lines[0]).split(",") + expected)
                     self.assertEqual(len(out), 4, "header, two rows, nothing after the last line end")
@@ -83,7 +86,7 @@ class Live(EvalTest):
         one = self.rows("tiny.toml", points, *SAMPLES)
         self.assertEqual(one, self.rows("tiny.toml", points, *SAMPLES, "--seed", "1"), "the default seed is 1")
         self.assertNotEqual(one[0]["rest_r"], self.rows("tiny.toml", points, *SAMPLES, "--seed", "2")[0]["rest_r"])
-        many = self.rows("tiny.toml", points, "--samples", "5000")
+        many = self.rows("tiny.toml", points, *WALKS, "5000")
         self.assertLess(float(many[0]["stderr_r"]), 0.3 * float(one[0]["stderr_r"]))
 
     def test_from_file_and_from_standard_input(self):
@@ -171,16 +174,26 @@ class Live(EvalTest):
     def test_the_exact_estimator_agrees_with_walks(self):
         points = "theta_i_deg,theta_o_deg,phi_deg\n20,50,70\n70,10,180\n"
         exact = self.rows("tiny.toml", points, "--estimator", "exact")
-        walked = self.rows("tiny.toml", points, "--samples", "20000")
+        walked = self.rows("tiny.toml", points, *WALKS, "20000")
         for a, b in zip(exact, walked):
             for channel in "rgb":
                 self.assertEqual(float(a[f"stderr_{channel}"]), 0)
                 difference = abs(float(a[f"rest_{channel}"]) - float(b[f"rest_{channel}"]))
                 self.assertLessEqual(difference, 5 * float(b[f"stderr_{channel}"]))  # 1 false alarm in 3e5
 
+    def test_exact_is_the_default_and_is_named(self):
+        points = f"{ANGLES}\n20,50,70\n"
+        for quantity in ("brdf", "albedo"):
+            default = self.evaluate("tiny.toml", points, "--quantity", quantity)
+            self.assertEqual(default.err, NAMED.format("exact-quadrature"))
+            for name in ("auto", "exact"):
+                chosen = self.evaluate("tiny.toml", points, "--quantity", quantity, "--estimator", name)
+                self.assertEqual((chosen.out, chosen.err), (default.out, default.err))
+        self.assertEqual(self.evaluate("tiny.toml", "theta_i_deg\n20\n", "--quantity", "film").err, "")
+
     def test_albedo_needs_one_angle_and_conserves_energy(self):
         rows = self.rows("tiny.toml", "theta_i_deg,albedo\n0,1\n45,1\n85,1\n45,0\n", "--quantity", "albedo",
-                         "--samples", "500", "--set", "material.absorption_per_nm=0")
+                         *WALKS, "500", "--set", "material.absorption_per_nm=0")
         for row in rows:
             for suffix in COLOURS:
                 self.assertGreater(float(row["total" + suffix]), 0)

@@ -168,6 +168,29 @@ class MissingTable(RenderTest):
             with self.subTest(material=material):
                 self.render(f"{material}.exr", "--material", material, "--spp", "1", scene="scenes/other.toml")
 
+    def test_the_estimator_of_live_skins(self):
+        """tiny.toml has the product path, which no fast exact evaluator covers."""
+        self.write("sum.toml", support.TINY_RECIPE.replace('"product"', '"sum"'))
+        self.write("scenes/sum.toml", SCENE.replace("../tiny.toml", "../sum.toml"))
+        live = ("--material", "live", "--spp", "1", "--stats", "s.json")
+        cases = [("scene", "auto", "pfmc-unidirectional"), ("scene", "pfmc", "pfmc-unidirectional"),
+                 ("sum", "auto", "exact-quadrature"), ("sum", "exact", "exact-quadrature"),
+                 ("sum", "pfmc", "pfmc-unidirectional")]
+        for scene, option, name in cases:
+            with self.subTest(scene=scene, option=option):
+                result = self.render("i.exr", *live, "--estimator", option, scene=f"scenes/{scene}.toml")
+                self.assertIn(f"estimator: {name}\n", result.err)
+                self.assertEqual(json.loads(self.read("s.json"))["estimator"], name)
+                self.assertIn(name.encode(), self.read("i.exr"))
+        self.assertIn("estimator: exact-quadrature\n", self.render("i.exr", *live, scene="scenes/sum.toml").err)
+
+    def test_an_estimator_that_cannot_be_used(self):
+        self.refuse("render", "scenes/scene.toml", "-o", "i.exr", "--material", "live", "--estimator", "exact",
+                    naming=["scenes/scene.toml", "'skin'", "'absorption_path'", "product", "sum"])
+        for material in ("table", "diffuse"):
+            self.refuse("render", "scenes/scene.toml", "-o", "i.exr", "--material", material, "--estimator", "exact",
+                        naming=["--estimator", "exact", "--material live"])
+
     def test_a_scene_that_names_no_table_or_recipe(self):
         self.write("scenes/none.toml", "\n".join(SCENE.splitlines()[2:]) + "\n")
         self.refuse("render", "scenes/none.toml", "-o", "i.exr", naming=["scenes/none.toml", "'table'"])

@@ -115,6 +115,26 @@ class Info(TableFileTest):
         self.assertEqual(self.info("CAPITAL.EXR"), self.info("table.exr"))
 
 
+class InfoOfRecipe(support.CliTest):
+    def test_it_names_what_auto_takes_and_why(self):
+        text = self.succeed("info", "tiny.toml").out
+        self.assertRegex(text, r"(?m)^eval +exact-quadrature: \w")
+        self.assertRegex(text, r"(?m)^render +pfmc-unidirectional: .*absorption_path.*product.*sum")
+        info = json.loads(self.succeed("info", "tiny.toml", "--json").out)
+        self.assertEqual(list(info), ["recipe_hash", "spectrum", "eval", "render"])
+        self.assertEqual(info["eval"]["estimator"], "exact-quadrature")
+        self.assertEqual(info["render"]["estimator"], "pfmc-unidirectional")
+        for use in ("eval", "render"):
+            self.assertIn(info[use]["reason"], text)
+
+    def test_the_sum_path_is_exact_in_a_renderer_unless_a_rough_film_is_thick(self):
+        recipe = support.TINY_RECIPE.replace('"product"', '"sum"').replace("roughness = 0.0", "roughness = 0.2")
+        for thickness, name in (("300.0", "exact-quadrature"), ("6000.0", "pfmc-unidirectional")):
+            grid_free = recipe.replace("film_thickness_nm = [200.0, 400.0]\n", "")
+            self.write("sum.toml", grid_free.replace("film_thickness_nm = 300.0", f"film_thickness_nm = {thickness}"))
+            self.assertEqual(json.loads(self.succeed("info", "sum.toml", "--json").out)["render"]["estimator"], name)
+
+
 class OtherPrograms(TableFileTest):
     """What other programs see of the files. A missing program fails the test."""
 
@@ -255,9 +275,10 @@ class Damage(TableFileTest):
                 for command in ("info", "verify"):
                     with self.subTest(name=name, command=command):
                         self.refuse(command, name, naming=[name, needle])
-        for command in ("info", "verify"):
+        self.write("tiny.txt", support.TINY_RECIPE)
+        for command, name in (("info", "tiny.txt"), ("verify", "tiny.txt"), ("verify", "tiny.toml")):
             with self.subTest(command=command):
-                self.refuse(command, "tiny.toml", naming=["tiny.toml", ".exr", ".vdb"])
+                self.refuse(command, name, naming=[name, ".exr", ".vdb"])
 
 
 if __name__ == "__main__":

@@ -29,9 +29,9 @@ class Help(support.CliTest):
         options = {
             "bake": ("--output", "--set", "--threads", "--seed"),
             "info": ("--json",),
-            "eval": ("--points", "--quantity", "--set", "--samples", "--seed"),
+            "eval": ("--points", "--quantity", "--estimator", "--set", "--samples", "--seed"),
             "verify": ("--points", "--json", "--threads", "--seed"),
-            "render": ("--output", "--material", "--size", "--spp", "--threads", "--seed", "--stats"),
+            "render": ("--output", "--material", "--estimator", "--size", "--spp", "--threads", "--seed", "--stats"),
         }
         for command, names in options.items():
             text = self.succeed(command, "--help").out
@@ -76,7 +76,7 @@ class Mistakes(support.CliTest):
             ((*bake, "extra.toml"), ["extra.toml"]),
             (("bake", "tiny.toml"), ["--output"]),
             (("bake",), ["recipe"]),
-            (("info",), ["table"]),
+            (("info",), ["source"]),
             (("eval", "tiny.toml"), ["--points"]),
             (("verify",), ["table"]),
             (("render", "scene.toml"), ["--output"]),
@@ -86,6 +86,8 @@ class Mistakes(support.CliTest):
             ((*bake, "--seed", "-1"), ["--seed", "-1"]),
             ((*bake, "--seed"), ["--seed"]),
             ((*evaluate, "--quantity", "colour"), ["--quantity", "colour", "brdf", "albedo", "film"]),
+            ((*evaluate, "--estimator", "guess"), ["--estimator", "guess", "auto", "pfmc", "exact"]),
+            (("render", "scene.toml", "-o", "i.exr", "--estimator", "guess"), ["guess", "auto", "pfmc", "exact"]),
             ((*evaluate, "--samples", "1"), ["--samples", "1", "2"]),
             ((*evaluate, "--samples", "many"), ["--samples", "many"]),
             (("verify", "table.exr", "--points", "0"), ["--points", "0", "1"]),

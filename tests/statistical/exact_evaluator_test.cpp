@@ -197,6 +197,27 @@ TEST(ExactEvaluator, MoreNodesChangeNothing) {
   }
 }
 
+// The same where facets bend light into a lower index: they send it down to grazing the base and no further,
+// and a film of lower index than both neighbours lets it tunnel.
+TEST(ExactEvaluator, MoreNodesChangeNothingOverARarerBase) {
+  Rng rng(13, 0);
+  for (int trial = 0; trial < 40; ++trial) {
+    Material m = test::all_modes(0.02 + 0.9 * square(rng.uniform()))[6 + trial % 2].material;
+    m.film_thickness_nm = 1500 * rng.uniform();
+    m.exterior_ior = 1.05 + 0.95 * rng.uniform();
+    m.base_ior = lerp(rng.uniform(), 1, m.exterior_ior - 0.01);
+    m.absorption_per_nm = std::pow(10, -4 + 4 * rng.uniform());
+    const ExactRest exact = exact_rgb3(m), finer = exact_rgb3(m, kFine);
+    for (const double theta : {0.4, 0.9, 1.5}) {
+      const Vec3 wo = spherical_direction(theta, 0), wi = spherical_direction(1.5 * rng.uniform(), 0);
+      const Rgb expected = finer.rest(wo, wi);
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(exact.rest(wo, wi)[c], expected[c], 5e-4 * expected[c] + 1e-15) << "trial " << trial;
+      expect_relative(exact.albedo(wo), finer.albedo(wo), 5e-4, "trial " + std::to_string(trial));
+    }
+  }
+}
+
 // Wavelengths carried together are those carried alone, each with its own albedo and absorption, folded. Ten:
 // the last three stand beside copies of the last.
 TEST(ExactEvaluator, WavelengthsAreIndependent) {

@@ -66,7 +66,7 @@ int run_info_of_recipe(const InfoOptions& options) {
   const Recipe recipe = load_recipe(options.source);
   Json json;
   json["recipe_hash"] = recipe.hash;
-  json["spectrum"] = recipe.spectrum;
+  for (const auto& [key, value] : recipe.spectrum.attributes()) json[key] = value;
   json["eval"] = describe(automatic_for_eval(recipe.material));
   json["render"] = describe(automatic_for_render(recipe.material));
   if (options.json) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kDirections = 64;  // wo a point
 constexpr int kMostAttempts = 4096;      // to draw them
-constexpr int kFirstEstimates = 64;      // a live run; doubled until the expected floor is low enough
+constexpr int kFirstEstimates = 16;      // a live run; doubled until the expected floor is low enough
 constexpr int kBatches = 16;
 constexpr int kMostEstimates = 1 << 13;
 

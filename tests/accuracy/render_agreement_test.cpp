@@ -7,6 +7,7 @@
 #include "bake/recipe.h"
 #include "runtime/tracer/render.h"
 #include "runtime/tracer/scene.h"
+#include "sunbeam/color_converted_bsdf.h"
 #include "sunbeam/lambert.h"
 #include "sunbeam/table_bsdf.h"
 #include "sunbeam/table_io.h"
@@ -21,7 +22,12 @@ Material with_thickness(const SceneMaterial& skin, Material material) {
   return material;
 }
 
+std::unique_ptr<Bsdf> in_rec709(std::unique_ptr<Bsdf> bsdf, const Table& table) {
+  return std::make_unique<ColorConvertedBsdf>(std::move(bsdf), table.color_space(), ColorSpace::rec709);
+}
+
 RenderResult render_scene(const Scene& scene, const Table& table, bool live, std::uint64_t seed) {
+  const Spectrum spectrum = parse_recipe(table.info.at("recipe"), "recipe").spectrum;
   std::vector<std::unique_ptr<Bsdf>> owned;
   std::vector<const Bsdf*> bsdfs;
   for (const SceneMaterial& m : scene.materials) {
@@ -29,15 +35,16 @@ RenderResult render_scene(const Scene& scene, const Table& table, bool live, std
     if (m.type == SceneMaterial::Type::diffuse)
       owned.push_back(std::make_unique<Lambert>(m.albedo));
     else if (live)
-      owned.push_back(std::make_unique<LiveBsdf>(skin));
+      owned.push_back(in_rec709(std::make_unique<LiveBsdf>(skin, spectrum.wavelengths(skin)), table));
     else
-      owned.push_back(std::make_unique<TableBsdf>(table, Parameters::of(skin), OutsideGrid::refuse));
+      owned.push_back(
+          in_rec709(std::make_unique<TableBsdf>(table, Parameters::of(skin), OutsideGrid::refuse), table));
     bsdfs.push_back(owned.back().get());
   }
   RenderSettings settings;
   settings.width = 160;
   settings.height = 90;
-  settings.spp = 128;
+  settings.spp = 256;
   settings.seed = seed;
   return render(scene, bsdfs, settings);
 }

@@ -27,9 +27,9 @@ const Table& clear_table() {
   test::SmallRecipe recipe;
   recipe.roughness = 0;
   recipe.absorption_per_nm = 0;
-  recipe.albedo = 0.3;
+  recipe.albedo = 0.9;
   recipe.base_ior = 1.5;
-  recipe.noise = 0.003;
+  recipe.noise = 0.0005;
   return test::baked(recipe);
 }
 
@@ -71,7 +71,7 @@ TEST(Verify, GoodTableIsWithinTolerance) {
 // points.
 TEST(Verify, ExactTableIsAtTheNoiseFloor) {
   const VerifyReport report = verify(clear_table(), settings(100, 0.06));
-  EXPECT_GT(report.noise_floor.median, 0.005);  // well above the table's own noise
+  EXPECT_GT(report.noise_floor.median, 0.002);  // well above the table's own noise
   EXPECT_GT(report.error.median / report.noise_floor.median, 0.71 / 1.25);
   EXPECT_LT(report.error.median / report.noise_floor.median, 0.71 * 1.25);
 }

@@ -7,6 +7,7 @@
 
 #include "bake/live/exact_bsdf.h"
 #include "bake/live/live_bsdf.h"
+#include "bake/recipe.h"
 #include "sunbeam/lambert.h"
 #include "sunbeam/table_bsdf.h"
 #include "sunbeam/table_io.h"
@@ -38,13 +39,18 @@ const Bsdf& table_bsdf() {
   return bsdf;
 }
 
+// At the wavelengths of the table's own recipe.
+Wavelengths wavelengths() {
+  return parse_recipe(table().info.at("recipe"), "recipe").spectrum.wavelengths(table().material);
+}
+
 const Bsdf& live_bsdf() {
-  static const LiveBsdf bsdf(table().material);
+  static const LiveBsdf bsdf(table().material, wavelengths());
   return bsdf;
 }
 
 const Bsdf& exact_bsdf() {
-  static const ExactBsdf bsdf(table().material, Wavelengths::rgb3(table().material));
+  static const ExactBsdf bsdf(table().material, wavelengths());
   return bsdf;
 }
 

@@ -25,27 +25,43 @@ struct FilmPhases {
   double step() const { return k[1] - k[0]; }
 };
 
+// One side of a film with all divisions by indices done: cos^2 in a medium = offset + slope cos^2 outside.
+struct FilmSide {
+  explicit FilmSide(const ThinFilm& film)
+      : n0(film.exterior_ior),
+        n1(film.film_ior),
+        n2(film.base_ior),
+        per_n0(1 / n0),
+        per_n1(1 / n1),
+        per_n2(1 / n2),
+        offset1((n1 - n0) * (n1 + n0) * square(per_n1)),
+        slope1(square(n0 * per_n1)),
+        offset2((n2 - n0) * (n2 + n0) * square(per_n2)),
+        slope2(square(n0 * per_n2)) {}
+
+  double n0, n1, n2, per_n0, per_n1, per_n2, offset1, slope1, offset2, slope2;
+};
+
 template <class V>
 class FilmLanes {
  public:
   // At cosines `c0` in the film's exterior; those <= 0 reflect everything.
-  SUNBEAM_INLINE FilmLanes(const ThinFilm& film, const FilmPhases& phases, const V& c0) : phases_(phases) {
-    const double n0 = film.exterior_ior, n1 = film.film_ior, n2 = film.base_ior;
-    const V c2_squared = V((n2 - n0) * (n2 + n0) / square(n2)) + squared(c0) * V(square(n0 / n2));
+  SUNBEAM_INLINE FilmLanes(const FilmSide& film, const FilmPhases& phases, const V& c0) : phases_(phases) {
+    const V c2_squared = V(film.offset2) + squared(c0) * V(film.slope2);
     const auto through = (c2_squared > V(0)) & (c0 > V(0));
     through_ = select(through, V(1), V(0));
     const V c2 = select(through, sqrt(max(c2_squared, V(0))), V(1));  // anything but 0 / 0
     const V cosine = select(through, c0, V(1));
     if (phases.is_bare) {
-      bare_polarisation(V(n0) * cosine, V(n2) * c2, s_);
-      bare_polarisation(cosine * V(1 / n0), c2 * V(1 / n2), p_);
+      bare_polarisation(V(film.n0) * cosine, V(film.n2) * c2, s_);
+      bare_polarisation(cosine * V(film.per_n0), c2 * V(film.per_n2), p_);
       return;
     }
-    c1_squared_ = V((n1 - n0) * (n1 + n0) / square(n1)) + squared(cosine) * V(square(n0 / n1));
-    polarisation(V(n0) * cosine, V(n2) * c2, V(1 / n1), V(n1) * c1_squared_, s_);
-    polarisation(cosine * V(1 / n0), c2 * V(1 / n2), V(n1), c1_squared_ * V(1 / n1), p_);
+    c1_squared_ = V(film.offset1) + squared(cosine) * V(film.slope1);
+    polarisation(V(film.n0) * cosine, V(film.n2) * c2, V(film.per_n1), V(film.n1) * c1_squared_, s_);
+    polarisation(cosine * V(film.per_n0), c2 * V(film.per_n2), V(film.n1), c1_squared_ * V(film.per_n1), p_);
     const V tiny(1e-12);
-    may_be_evanescent_ = n1 < n0;
+    may_be_evanescent_ = film.n1 < film.n0;
     c1_ = sqrt(may_be_evanescent_ ? max(max(c1_squared_, -c1_squared_), tiny) : max(c1_squared_, tiny));
     per_c1_squared_ = V(1) / squared(c1_);
   }

@@ -15,6 +15,10 @@ bool is_even(const FilmPhases& phases) {
   return phases.count > 3;  // a recurrence for fewer saves nothing
 }
 
+ThinFilm film_of(const Material& material) {
+  return {material.exterior_ior, material.film_ior, material.base_ior, material.film_thickness_nm};
+}
+
 FilmPhases phases_of(const Material& material, const Wavelengths& wavelengths) {
   FilmPhases phases;
   for (const double nm : wavelengths.nm)
@@ -64,7 +68,7 @@ Guide make_guide(const Layers& layers) {
 }  // namespace
 
 Layers::Layers(const Material& material, const Wavelengths& wavelengths)
-    : film{material.exterior_ior, material.film_ior, material.base_ior, material.film_thickness_nm},
+    : film(film_of(material)),
       film_below(film),
       phases(phases_of(material, wavelengths)),
       alpha(material.roughness),
@@ -79,7 +83,7 @@ Layers::Layers(const Material& material, const Wavelengths& wavelengths)
       guide({}),
       open_guide({}) {
   if (!straight) {
-    film_below = film.reversed();
+    film_below = FilmSide(film_of(material).reversed());
     bends = std::abs(material.exterior_ior / material.base_ior - 1) > kIndexMatch;
     if (bends) index_ratio = material.exterior_ior / material.base_ior;
   }

@@ -12,8 +12,8 @@ namespace sunbeam::walk {
 struct Layers {
   Layers(const Material& material, const Wavelengths& wavelengths);  // 1 to kMostWavelengths of them
 
-  ThinFilm film;        // as seen from outside
-  ThinFilm film_below;  // as seen from below: reversed, or the same in "straight" mode
+  FilmSide film;        // as seen from outside
+  FilmSide film_below;  // as seen from below: reversed, or the same in "straight" mode
   FilmPhases phases;    // of either
   double alpha;         // 0: smooth
   double index_ratio;   // n0 / n2 if passing light bends, else 1

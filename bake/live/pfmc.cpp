@@ -58,7 +58,7 @@ double Pfmc::chance(const Powers& powers) const {
   return std::clamp(sum, 0.0, 1.0);
 }
 
-Pfmc::Powers Pfmc::reflectances(const ThinFilm& film, double cosine) const {
+Pfmc::Powers Pfmc::reflectances(const walk::FilmSide& film, double cosine) const {
   Powers powers;
   const walk::FilmLanes<double> lanes(film, layers_.phases, std::clamp(cosine, 0.0, 1.0));
   lanes.reflectances([&](int k, double r) { powers[k] = r; });

@@ -79,7 +79,7 @@ class Pfmc {
   using Powers = walk::Spectrum<double>;
   double chance(const Powers& powers) const;
   Rgb fold(const double* values) const;
-  Powers reflectances(const ThinFilm& film, double cosine) const;
+  Powers reflectances(const walk::FilmSide& film, double cosine) const;
   std::optional<BsdfSample> sample_below(double cosine, Powers& throughput, Rng& rng) const;
   double leave_pdf(const Vec3& wi, Rng& rng, double& cosine) const;
 

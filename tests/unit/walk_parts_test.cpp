@@ -80,7 +80,8 @@ void expect_film(const Film& f, const std::vector<double>& nm, double cosine, do
     phases.k[phases.count++] = 2 * kPi * f.film.film_ior * f.film.thickness_nm / wavelength;
   phases.is_bare = f.film.thickness_nm == 0;
   phases.is_even = nm.size() > 3;
-  const FilmLanes<V> lanes(f.film, phases, V(cosine));
+  const FilmSide side(f.film);
+  const FilmLanes<V> lanes(side, phases, V(cosine));
   int visited = 0;
   lanes.reflectances([&](int j, const V& r) {
     EXPECT_NEAR(mean_of_lanes(r), airy(f.film, cosine, Rgb(nm[j])).reflectance.g, tolerance)

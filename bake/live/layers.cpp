@@ -28,42 +28,68 @@ FilmPhases phases_of(const Material& material, const Wavelengths& wavelengths) {
   return phases;
 }
 
-// exp(-visits tau / cos), mean over wavelengths of what `power` says of each.
-template <class Power>
-double attenuated(const Layers& layers, double cosine, double visits, Power power) {
-  double sum = 0;
-  for (int j = 0; j < layers.count; ++j) sum += power(j) * std::exp(-visits * layers.tau[j] / cosine);
-  return sum;
-}
-
 double cosine_of_bin(int bin) { return std::sqrt((bin + 0.5) / Guide::kBins); }
 
-Guide make_open_guide(const Layers& layers) {
-  std::array<double, Guide::kBins> importance;
-  for (int bin = 0; bin < Guide::kBins; ++bin)
-    importance[bin] = attenuated(layers, cosine_of_bin(bin), 1, [](int) { return 1.0; });
-  return Guide(importance);
-}
-
-// What comes back down from the film, through the pigment both times.
-Guide make_guide(const Layers& layers) {
-  constexpr int kDraws = 4;  // packets; noise here is harmless
-  using Lanes = Packet<xsimd::default_arch>;
-  const Events<Lanes> events(layers);
-  Rng rng(1, 0);
-  std::array<double, Guide::kBins> importance{};
-  for (int bin = 0; bin < Guide::kBins; ++bin) {
-    const double cosine = cosine_of_bin(bin);
-    for (int draw = 0; draw < (layers.is_smooth() ? 1 : kDraws); ++draw) {
-      const auto down = events.reflect_below(Lanes(cosine), rng);
-      Spectrum<double> power;
-      events.reflectances_below(down.film,
-                                [&](int j, const Lanes& r) { power[j] = mean_of_lanes(r * down.weight); });
-      importance[bin] += attenuated(layers, cosine, 2, [&](int j) { return power[j]; });
+// What directions below the film are worth, per bin of the guides. Importance only: noise here is harmless.
+class BelowFilm {
+ public:
+  explicit BelowFilm(const Layers& layers) : layers_(layers) {
+    const Events<Lanes> events(layers);
+    const int draws = layers.is_smooth() ? 1 : kDraws;
+    Rng rng(1, 0);
+    for (int bin = 0; bin < Guide::kBins; ++bin) {
+      reflected_[bin].fill(0);
+      for (int draw = 0; draw < draws; ++draw) {
+        const auto down = events.reflect_below(Lanes(cosine_of_bin(bin)), rng);
+        events.reflectances_below(down.film, [&](int j, const Lanes& r) {
+          reflected_[bin][j] += mean_of_lanes(r * down.weight) / draws;
+        });
+      }
     }
   }
-  return Guide(importance);
-}
+
+  // To walks that go on: what comes back down, through the pigment both times.
+  Guide going_on() const {
+    return guide([&](int bin, int j) { return reflected_[bin][j] * square(attenuation(bin, j)); });
+  }
+
+  // To walks that may leave: what gets out, now or after later visits of the base.
+  Guide leaving() const {
+    std::array<double, kMostWavelengths> later;
+    for (int j = 0; j < layers_.count; ++j) later[j] = leaves_later(j);
+    return guide([&](int bin, int j) {
+      const double reflected = reflected_[bin][j], attenuated = attenuation(bin, j);
+      return attenuated * (1 - reflected + reflected * attenuated * later[j]);
+    });
+  }
+
+ private:
+  using Lanes = Packet<xsimd::default_arch>;
+  static constexpr int kDraws = 4;  // packets
+
+  double attenuation(int bin, int j) const { return std::exp(-layers_.tau[j] / cosine_of_bin(bin)); }
+
+  // kd times the share of what the base sends up that gets out at last: v = out + back kd v.
+  double leaves_later(int j) const {
+    double out = 0, back = 0;
+    for (int bin = 0; bin < Guide::kBins; ++bin) {
+      out += attenuation(bin, j) * (1 - reflected_[bin][j]) / Guide::kBins;
+      back += square(attenuation(bin, j)) * reflected_[bin][j] / Guide::kBins;
+    }
+    return layers_.albedo[j] * out / std::max(1 - layers_.albedo[j] * back, 1e-3);
+  }
+
+  template <class Importance>
+  Guide guide(Importance importance) const {
+    std::array<double, Guide::kBins> sums{};
+    for (int bin = 0; bin < Guide::kBins; ++bin)
+      for (int j = 0; j < layers_.count; ++j) sums[bin] += importance(bin, j);
+    return Guide(sums);
+  }
+
+  const Layers& layers_;
+  std::array<std::array<double, kMostWavelengths>, Guide::kBins> reflected_;
+};
 
 }  // namespace
 
@@ -92,8 +118,9 @@ Layers::Layers(const Material& material, const Wavelengths& wavelengths)
     tau[j] = material.optical_depth() * wavelengths.absorption[j];
   }
   summarise();
-  guide = make_guide(*this);
-  open_guide = make_open_guide(*this);
+  const BelowFilm below(*this);
+  guide = below.going_on();
+  open_guide = below.leaving();
 }
 
 void Layers::summarise() {

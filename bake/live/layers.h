@@ -30,7 +30,7 @@ struct Layers {
   double radiance_scale;
 
   Guide guide;       // for walks that go on: towards what the film throws back and the pigment lets through
-  Guide open_guide;  // for walks that may leave: towards what the pigment lets through
+  Guide open_guide;  // for walks that may leave: towards what gets out, now or later
 
   // Keeps `picks` of the wavelengths: the k-th becomes what was number which(k).
   template <class Which>

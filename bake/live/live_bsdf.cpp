@@ -41,11 +41,11 @@ Rgb LiveBsdf::eval(const Vec3& wo, const Vec3& wi, Rng& rng) const {
 }
 
 std::optional<BsdfSample> LiveBsdf::sample(const Vec3& wo, Rng& rng) const {
-  return with_heroes(rng, [&](const Pfmc& model) { return model.sample(wo, rng); });
+  return with_heroes(rng, [&](const Pfmc& model) { return pfmc_.sample(wo, rng, model); });
 }
 
 double LiveBsdf::pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const {
-  return with_heroes(rng, [&](const Pfmc& model) { return model.estimate_pdf(wo, wi, rng); });
+  return with_heroes(rng, [&](const Pfmc& model) { return pfmc_.estimate_pdf(wo, wi, rng, model); });
 }
 
 double LiveBsdf::reflect_chance(double cosine) const {

@@ -2,7 +2,8 @@
 //
 // With many wavelengths every call draws kHeroes of them at random, in proportion to their share in colour
 // and spread evenly over it (Wilkie et al. 2014: one random hero, the others at fixed distances from it), and
-// weighs them accordingly: unbiased in RGB, and its colour noise averages out.
+// weighs them accordingly: unbiased in RGB, and its colour noise averages out. Heroes carry the rest; the
+// first surface is always the whole spectrum.
 #pragma once
 
 #include "bake/live/pfmc.h"

@@ -111,11 +111,11 @@ void Pfmc::add_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, std::spa
   }
 }
 
-std::optional<BsdfSample> Pfmc::sample(const Vec3& wo, Rng& rng) const {
+std::optional<BsdfSample> Pfmc::sample(const Vec3& wo, Rng& rng, const Pfmc& below) const {
   if (wo.z <= 0) return {};
   const Lane events(layers_);
   const auto facet = events.meet(wo.z, rng);
-  Powers power = reflectances(layers_.film, facet.cosine);
+  const Powers power = reflectances(layers_.film, facet.cosine);
   const double reflect_chance = chance(power);
   if (rng.uniform() < reflect_chance) {
     const auto up = events.mirror(wo.z, facet);
@@ -126,8 +126,9 @@ std::optional<BsdfSample> Pfmc::sample(const Vec3& wo, Rng& rng) const {
   const auto passage = events.cross(wo.z, facet, layers_.index_ratio);
   if (passage.weight == 0) return {};
   const double share = passage.weight / (1 - reflect_chance);
-  for (int k = 0; k < layers_.count; ++k) power[k] = (1 - power[k]) * share;
-  return sample_below(passage.cosine, power, rng);
+  Powers entered = &below == this ? power : below.reflectances(layers_.film, facet.cosine);
+  for (int k = 0; k < below.layers_.count; ++k) entered[k] = (1 - entered[k]) * share;
+  return below.sample_below(passage.cosine, entered, rng);
 }
 
 // A walk that reaches the base at `cosine`.
@@ -170,17 +171,24 @@ double Pfmc::leave_pdf(const Vec3& wi, Rng& rng, double& cosine) const {
   return pass_chance * solid_angles * (layers_.is_smooth() ? 1 : 1 / events.g1_ratio(wi.z, cosine));
 }
 
-double Pfmc::estimate_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const {
+double Pfmc::estimate_pdf(const Vec3& wo, const Vec3& wi, Rng& rng, const Pfmc& below) const {
   if (wo.z <= 0 || wi.z <= 0) return 0;
-  double pdf = first_pdf(wo, wi);
   const Lane events(layers_);
-  const auto entry = events.meet(wo.z, rng);
-  if (events.cross(wo.z, entry, layers_.index_ratio).weight == 0) return pdf;
-  const double entered = 1 - reflect_chance(entry.cosine);
+  const auto facet = events.meet(wo.z, rng);
+  const auto passage = events.cross(wo.z, facet, layers_.index_ratio);
+  const double first = first_pdf(wo, wi);
+  if (passage.weight == 0) return first;
+  return first + (1 - reflect_chance(facet.cosine)) * below.pdf_below(wi, rng);
+}
+
+// Of a walk below the film. The base's guide asks for no direction of arrival.
+double Pfmc::pdf_below(const Vec3& wi, Rng& rng) const {
+  const Lane events(layers_);
+  double pdf = 0;
   for (;;) {
     double cosine;
     const double leave = leave_pdf(wi, rng, cosine);
-    pdf += entered * leave * layers_.open_guide.density(square(cosine)) * cosine * kInvPi;
+    pdf += leave * layers_.open_guide.density(square(cosine)) * cosine * kInvPi;
     const auto up = events.leave_base(layers_.open_guide, rng);
     const auto facet = events.meet(up.cosine, rng);
     if (events.mirror(up.cosine, facet).weight == 0) return pdf;

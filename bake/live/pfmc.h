@@ -53,11 +53,16 @@ class Pfmc {
                     Technique technique = Technique::unidirectional) const;
 
   // One walk (a single one) that chooses like the film does; the throughput is the walk's own, its mean at a
-  // given wi is f cos / pdf. Empty if lost in the microsurface.
-  std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const;
+  // given wi is f cos / pdf. Empty if lost in the microsurface. What enters the film is carried on by
+  // `below`, the same model at other wavelengths.
+  std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng, const Pfmc& below) const;
+  std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const { return sample(wo, rng, *this); }
 
   // Unbiased estimate of the density of sample()'s non-Dirac outcomes at wi, 1/sr, from one walk.
-  double estimate_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const;
+  double estimate_pdf(const Vec3& wo, const Vec3& wi, Rng& rng, const Pfmc& below) const;
+  double estimate_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const {
+    return estimate_pdf(wo, wi, rng, *this);
+  }
 
   // Density of choosing the first surface and going to wi, 1/sr. Exact; 0 for a smooth film.
   double first_pdf(const Vec3& wo, const Vec3& wi) const;
@@ -82,6 +87,7 @@ class Pfmc {
   Powers reflectances(const walk::FilmSide& film, double cosine) const;
   std::optional<BsdfSample> sample_below(double cosine, Powers& throughput, Rng& rng) const;
   double leave_pdf(const Vec3& wi, Rng& rng, double& cosine) const;
+  double pdf_below(const Vec3& wi, Rng& rng) const;
 
   walk::Layers layers_;
   std::array<Rgb, kMostWavelengths> weight_;

@@ -63,6 +63,13 @@ class BelowFilm {
     });
   }
 
+  // Of light that enters steeply, mean over wavelengths.
+  double worth() const {
+    double sum = 0;
+    for (int j = 0; j < layers_.count; ++j) sum += std::exp(-layers_.tau[j]) * leaves_later(j);
+    return sum / layers_.count;
+  }
+
  private:
   using Lanes = Packet<xsimd::default_arch>;
   static constexpr int kDraws = 4;  // packets
@@ -107,7 +114,8 @@ Layers::Layers(const Material& material, const Wavelengths& wavelengths)
       product(material.absorption_path == AbsorptionPath::product),
       radiance_scale(material.radiance_scale()),
       guide({}),
-      open_guide({}) {
+      open_guide({}),
+      worth_below(1) {
   if (!straight) {
     film_below = FilmSide(film_of(material).reversed());
     bends = std::abs(material.exterior_ior / material.base_ior - 1) > kIndexMatch;
@@ -121,6 +129,7 @@ Layers::Layers(const Material& material, const Wavelengths& wavelengths)
   const BelowFilm below(*this);
   guide = below.going_on();
   open_guide = below.leaving();
+  worth_below = std::clamp(below.worth(), kLeastWorth, 1.0);
 }
 
 void Layers::summarise() {

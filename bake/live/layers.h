@@ -10,6 +10,8 @@
 namespace sunbeam::walk {
 
 struct Layers {
+  static constexpr double kLeastWorth = 0.05;
+
   Layers(const Material& material, const Wavelengths& wavelengths);  // 1 to kMostWavelengths of them
 
   FilmSide film;        // as seen from outside
@@ -29,8 +31,9 @@ struct Layers {
   bool product;   // exp(-tau / (cos_i cos_o)); else exp(-tau (1 / cos_i + 1 / cos_o))
   double radiance_scale;
 
-  Guide guide;       // for walks that go on: towards what the film throws back and the pigment lets through
-  Guide open_guide;  // for walks that may leave: towards what gets out, now or later
+  Guide guide;         // for walks that go on: towards what the film throws back and the pigment lets through
+  Guide open_guide;    // for walks that may leave: towards what gets out, now or later
+  double worth_below;  // of the light that enters the film, about what leaves again; at least kLeastWorth
 
   // Keeps `picks` of the wavelengths: the k-th becomes what was number which(k).
   template <class Which>

@@ -11,11 +11,14 @@ LiveBsdf::LiveBsdf(const Material& material, const Wavelengths& wavelengths, Tec
       share_{},
       transmitted_cosine_(0) {
   for (int k = 0; k < pfmc_.wavelengths(); ++k) share_[k + 1] = share_[k] + pfmc_.importance(k);
-  for (int i = 0; i <= kChances; ++i)
-    reflect_chance_[i] = pfmc_.reflect_chance(static_cast<double>(i) / kChances);
+  for (int i = 0; i <= kIntervals; ++i) {
+    const double cosine = static_cast<double>(i) / kIntervals;
+    reflect_chance_[i] = pfmc_.reflect_chance(cosine);
+    transmittance_[i] = 1 - pfmc_.mean_reflectance(cosine);
+  }
   constexpr int kNodes = 32;  // midpoints in sin^2; the density only steers MIS weights
   for (int i = 0; i < kNodes; ++i)
-    transmitted_cosine_ += kPi / kNodes * (1 - reflect_chance(std::sqrt((i + 0.5) / kNodes)));
+    transmitted_cosine_ += kPi / kNodes * look_up(transmittance_, std::sqrt((i + 0.5) / kNodes));
 }
 
 // Calls use(model) with the model at heroes drawn from `rng`, or at all wavelengths if they are few.
@@ -48,18 +51,19 @@ double LiveBsdf::pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const {
   return with_heroes(rng, [&](const Pfmc& model) { return pfmc_.estimate_pdf(wo, wi, rng, model); });
 }
 
-double LiveBsdf::reflect_chance(double cosine) const {
-  const double x = std::clamp(cosine, 0.0, 1.0) * kChances;
-  const int i = std::min(static_cast<int>(x), kChances - 1);
-  return lerp(x - i, reflect_chance_[i], reflect_chance_[i + 1]);
+double LiveBsdf::look_up(const Curve& curve, double cosine) {
+  const double x = std::clamp(cosine, 0.0, 1.0) * kIntervals;
+  const int i = std::min(static_cast<int>(x), kIntervals - 1);
+  return lerp(x - i, curve[i], curve[i + 1]);
 }
 
 double LiveBsdf::mis_pdf(const Vec3& wo, const Vec3& wi) const {
   if (wo.z <= 0 || wi.z <= 0) return 0;
-  const double rest = (1 - reflect_chance(wo.z)) * (1 - reflect_chance(wi.z)) * wi.z / transmitted_cosine_;
+  const double rest =
+      (1 - look_up(reflect_chance_, wo.z)) * look_up(transmittance_, wi.z) * wi.z / transmitted_cosine_;
   if (ggx_.alpha() == 0) return rest;
   const Vec3 h = normalize(wo + wi);
-  return ggx_.reflection_pdf(wo, h) * reflect_chance(dot(wo, h)) + rest;
+  return ggx_.reflection_pdf(wo, h) * look_up(reflect_chance_, dot(wo, h)) + rest;
 }
 
 }  // namespace sunbeam

@@ -32,14 +32,16 @@ class LiveBsdf final : public Bsdf {
  private:
   template <class Use>
   auto with_heroes(Rng& rng, Use use) const;
-  double reflect_chance(double cosine) const;
 
-  static constexpr int kChances = 128;  // intervals of the cosine
+  static constexpr int kIntervals = 128;  // of the cosine
+  using Curve = std::array<double, kIntervals + 1>;
+  static double look_up(const Curve& curve, double cosine);
 
   Pfmc pfmc_;
   Ggx ggx_;
   Technique technique_;
-  std::array<double, kChances + 1> reflect_chance_;
+  Curve reflect_chance_;                            // of sample(), from outside
+  Curve transmittance_;                             // mean over wavelengths
   std::array<double, kMostWavelengths + 1> share_;  // cumulative, of the wavelengths
   double transmitted_cosine_;                       // Int T(w) cos(w) dw
 };

@@ -52,10 +52,15 @@ Rgb Pfmc::fold(const double* values) const {
   return sum;
 }
 
-double Pfmc::chance(const Powers& powers) const {
+double Pfmc::mean_power(const Powers& powers) const {
   double sum = 0;
   for (int k = 0; k < layers_.count; ++k) sum += importance_[k] * powers[k];
   return std::clamp(sum, 0.0, 1.0);
+}
+
+// Of reflecting at the upper surface: equal shares of what reflects and of what comes back from below.
+double Pfmc::entry_chance(double reflectance) const {
+  return reflectance / (reflectance + (1 - reflectance) * layers_.worth_below);
 }
 
 Pfmc::Powers Pfmc::reflectances(const walk::FilmSide& film, double cosine) const {
@@ -77,8 +82,12 @@ Rgb Pfmc::first(const Vec3& wo, const Vec3& wi) const {
 
 Rgb Pfmc::dirac(const Vec3& wo) const { return layers_.is_smooth() ? film_reflectance(wo.z) : Rgb(); }
 
+double Pfmc::mean_reflectance(double cos_exterior) const {
+  return mean_power(reflectances(layers_.film, cos_exterior));
+}
+
 double Pfmc::reflect_chance(double cos_exterior) const {
-  return chance(reflectances(layers_.film, cos_exterior));
+  return entry_chance(mean_reflectance(cos_exterior));
 }
 
 double Pfmc::first_pdf(const Vec3& wo, const Vec3& wi) const {
@@ -116,7 +125,7 @@ std::optional<BsdfSample> Pfmc::sample(const Vec3& wo, Rng& rng, const Pfmc& bel
   const Lane events(layers_);
   const auto facet = events.meet(wo.z, rng);
   const Powers power = reflectances(layers_.film, facet.cosine);
-  const double reflect_chance = chance(power);
+  const double reflect_chance = entry_chance(mean_power(power));
   if (rng.uniform() < reflect_chance) {
     const auto up = events.mirror(wo.z, facet);
     if (up.weight == 0) return {};
@@ -142,7 +151,7 @@ std::optional<BsdfSample> Pfmc::sample_below(double cosine, Powers& throughput, 
 
     const auto facet = events.meet(up.cosine, rng);
     const Powers power = reflectances(layers_.film_below, facet.cosine);
-    const double reflect_chance = chance(power);
+    const double reflect_chance = mean_power(power);
     if (rng.uniform() >= reflect_chance) {
       const auto out = events.cross(up.cosine, facet, 1 / layers_.index_ratio);
       if (out.weight == 0) return {};
@@ -165,7 +174,7 @@ double Pfmc::leave_pdf(const Vec3& wi, Rng& rng, double& cosine) const {
   const auto passage = events.cross(wi.z, facet, layers_.index_ratio);
   cosine = passage.cosine;
   if (passage.weight == 0) return 0;
-  const double pass_chance = 1 - reflect_chance(facet.cosine);
+  const double pass_chance = 1 - mean_reflectance(facet.cosine);
   if (!layers_.bends) return pass_chance;
   const double solid_angles = square(layers_.index_ratio) * wi.z / cosine;
   return pass_chance * solid_angles * (layers_.is_smooth() ? 1 : 1 / events.g1_ratio(wi.z, cosine));
@@ -192,7 +201,7 @@ double Pfmc::pdf_below(const Vec3& wi, Rng& rng) const {
     const auto up = events.leave_base(layers_.open_guide, rng);
     const auto facet = events.meet(up.cosine, rng);
     if (events.mirror(up.cosine, facet).weight == 0) return pdf;
-    if (rng.uniform() >= chance(reflectances(layers_.film_below, facet.cosine))) return pdf;
+    if (rng.uniform() >= mean_power(reflectances(layers_.film_below, facet.cosine))) return pdf;
   }
 }
 

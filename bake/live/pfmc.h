@@ -52,9 +52,10 @@ class Pfmc {
   Rgb estimate_rest(const Vec3& wo, const Vec3& wi, Rng& rng,
                     Technique technique = Technique::unidirectional) const;
 
-  // One walk (a single one) that chooses like the film does; the throughput is the walk's own, its mean at a
-  // given wi is f cos / pdf. Empty if lost in the microsurface. What enters the film is carried on by
-  // `below`, the same model at other wavelengths.
+  // One walk (a single one), the throughput its own: its mean at a given wi is f cos / pdf. At the upper
+  // surface it chooses by the film's reflectance and by what entering is worth over this base, below like the
+  // film does. Empty if lost in the microsurface. What enters the film is carried on by `below`, the same
+  // model at other wavelengths.
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng, const Pfmc& below) const;
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const { return sample(wo, rng, *this); }
 
@@ -69,6 +70,8 @@ class Pfmc {
 
   // The chance that sample() chooses reflection at a facet met from outside at this cosine.
   double reflect_chance(double cos_exterior) const;
+  // Film reflectance as its choices below see it: mean over wavelengths by importance().
+  double mean_reflectance(double cos_exterior) const;
 
   // The share of wavelength k in choices and in colour: its absolute weights, normalised.
   double importance(int k) const { return importance_[k]; }
@@ -82,7 +85,8 @@ class Pfmc {
 
  private:
   using Powers = walk::Spectrum<double>;
-  double chance(const Powers& powers) const;
+  double mean_power(const Powers& powers) const;
+  double entry_chance(double reflectance) const;
   Rgb fold(const double* values) const;
   Powers reflectances(const walk::FilmSide& film, double cosine) const;
   std::optional<BsdfSample> sample_below(double cosine, Powers& throughput, Rng& rng) const;

@@ -13,25 +13,18 @@
 
 #include "bake/live/exact_bsdf.h"
 #include "bake/live/live_bsdf.h"
+#include "tests/support/materials.h"
 #include "tests/support/plain_walk.h"
 
 namespace sunbeam {
 namespace {
 
+using test::coated_diffuse;
+
 constexpr double kWavelengthNm = 550;
 constexpr double kRoughness[] = {0, 0.1, 0.3};
 constexpr double kPairs[][3] = {{60, 30, 120}, {10, 45, 60}, {80, 20, 90}, {45, 43, 178}};  // wo, wi, phi
 
-Material coated_diffuse(double roughness) {
-  Material m;
-  m.film_thickness_nm = 0;
-  m.film_ior = m.base_ior = 1.5;
-  m.absorption_per_nm = 0.01;
-  m.pigment_thickness_nm = 1;
-  m.albedo = Rgb(0.5);
-  m.roughness = roughness;
-  return m;
-}
 Wavelengths one_channel(const Material& m) { return Wavelengths::monochromatic(m, kWavelengthNm); }
 
 double thread_seconds() {

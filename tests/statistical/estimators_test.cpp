@@ -106,13 +106,7 @@ TEST(Estimators, BidirectionalAtEveryRowOfTheReference) {
 TEST(Estimators, CoatedDiffuseTo0_05Percent) {
   const double cells[][4] = {
       {60, 30, 120, 0.0842593}, {10, 45, 60, 0.0881279}, {80, 20, 90, 0.0566795}, {45, 43, 178, 0.0872790}};
-  Material m;
-  m.film_thickness_nm = 0;
-  m.film_ior = m.base_ior = 1.5;
-  m.absorption_per_nm = 0.01;
-  m.pigment_thickness_nm = 1;
-  m.albedo = Rgb(0.5);
-  m.roughness = 0;
+  const Material m = test::coated_diffuse(0);
   const Pfmc pfmc(m, Wavelengths::monochromatic(m, 550));
   for (const Technique technique : kTechniques)
     for (const auto& cell : cells) {

@@ -37,6 +37,18 @@ inline std::vector<NamedMaterial> all_modes(double roughness = 0.3, double optic
   return result;
 }
 
+// A coat of index 1.5 without a film over a diffuse base, as other renderers have it.
+inline Material coated_diffuse(double roughness) {
+  Material m;
+  m.film_thickness_nm = 0;
+  m.film_ior = m.base_ior = 1.5;
+  m.absorption_per_nm = 0.01;
+  m.pigment_thickness_nm = 1;
+  m.albedo = Rgb(0.5);
+  m.roughness = roughness;
+  return m;
+}
+
 // Unevenly weighted, with an albedo and an absorption of their own at each; channels stay positive.
 inline Wavelengths twelve_wavelengths(const Material& material) {
   Wavelengths w;

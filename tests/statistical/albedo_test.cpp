@@ -14,7 +14,7 @@ namespace sunbeam {
 namespace {
 
 const Vec3 kOblique = spherical_direction(0.9, 0.4);
-constexpr double kKnown = 3.3e-4;  // relative standard error of every albedo, in every channel
+constexpr double kKnown = 3.5e-4;  // relative standard error of every albedo, in every channel
 constexpr int kGrid = 16;          // 256 directions at a time
 
 // Means of once(), `least` of them and then until every channel is known to kKnown.
@@ -75,8 +75,9 @@ std::vector<test::Configuration> configurations() {
 
 class ThreeWays : public ::testing::TestWithParam<int> {};
 
-// Each way to 4.5 of its standard errors, that is at worst to 0.15 %, and the mean of the three to 0.1 %. The
-// exact albedo is good to 1e-4. 16 x 3 x 3 tests: 1e-3 in all. The mean adds 48 at 5 standard errors: 3e-5.
+// Each way to 4.5 of its standard errors, that is at worst to 0.17 %, and the mean of the three to 0.1 %. The
+// exact albedo is good to 1e-4. 16 x 3 x 3 tests: 1e-3 in all. The mean adds 48 at 4.4 standard errors or
+// more: 5e-4.
 TEST_P(ThreeWays, AgreeWithTheExactAlbedo) {
   const auto [name, material, wavelengths] = configurations()[GetParam()];
   const LiveBsdf bsdf(material, wavelengths);
@@ -135,7 +136,7 @@ TEST(WhiteFurnace, OneWavelengthExactly) {
 }
 
 // By eval and by sampling to 4.5 standard errors: 2 transmissions x 2 spectra x 3 angles x 3 channels x 2 are
-// 72 tests, 5e-4 in all. The mean over the angles by eval to 0.1 %: 12 at 5 standard errors, 7e-6.
+// 72 tests, 5e-4 in all. The mean over the angles by eval to 0.1 %: 12 at nearly 5, 1e-5.
 TEST(WhiteFurnace, EveryChannel) {
   for (const auto transmission : {Transmission::straight, Transmission::refract})
     for (const auto& [colour, spectrum] : test::both_spectra()) {

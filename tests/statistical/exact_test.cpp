@@ -110,57 +110,6 @@ TEST(Exact, RoughSumHasRankOneCrossRatio) {
   }
 }
 
-Material furnace(Transmission transmission) {
-  Material m = bright(transmission, 0, 0);
-  m.albedo = Rgb(1);
-  return m;
-}
-
-const double kFurnaceAngles[] = {0.0, 0.6, 1.2, 1.5};
-
-// Nothing absorbs: all light comes back. A walk that carries one wavelength has weight 1 at every step.
-TEST(Exact, WhiteFurnaceOneWavelengthExactly) {
-  for (const auto transmission : {Transmission::straight, Transmission::refract})
-    for (const double theta : kFurnaceAngles) {
-      const Material material = furnace(transmission);
-      const LiveBsdf bsdf(material, Wavelengths::monochromatic(material, 550));
-      const auto totals = test::sample_totals(bsdf, spherical_direction(theta, 0), 2000, 3);
-      EXPECT_NEAR(totals.albedo.g.mean(), 1, 1e-9) << to_string(transmission) << ' ' << theta;
-      EXPECT_EQ(totals.empty, 0);
-    }
-}
-
-// Three wavelengths share a walk, each is white in the mean: 24 tests at 4.5 standard errors.
-TEST(Exact, WhiteFurnaceBySampling) {
-  for (const auto transmission : {Transmission::straight, Transmission::refract})
-    for (const double theta : kFurnaceAngles) {
-      const auto albedo =
-          test::sample_totals(LiveBsdf(furnace(transmission)), spherical_direction(theta, 0), 40000, 4)
-              .albedo;
-      for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(albedo[c].mean(), 1, 4.5 * albedo[c].std_error())
-            << to_string(transmission) << ' ' << theta;
-        EXPECT_LT(albedo[c].std_error(), 0.01);
-      }
-    }
-}
-
-// The Dirac weight and the integral of eval() make up one.
-TEST(Exact, WhiteFurnaceByEval) {
-  for (const auto transmission : {Transmission::straight, Transmission::refract})
-    for (const double theta : {0.0, 1.2}) {
-      const Vec3 wo = spherical_direction(theta, 0);
-      const LiveBsdf bsdf(furnace(transmission));
-      const Rgb dirac = Pfmc(furnace(transmission)).dirac(wo);
-      const auto albedo = test::albedo_by_eval(bsdf, wo, 60, 16, 5);
-      for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(dirac[c] + albedo[c].mean(), 1,
-                    6 * albedo[c].std_error());  // 16 repeats: Student's t, 2e-5
-        EXPECT_LT(albedo[c].std_error(), 0.004);
-      }
-    }
-}
-
 // No film at all: eval is albedo / pi exactly, the pigment's attenuation besides.
 TEST(Exact, IndexMatchedIsThePlainBase) {
   for (const auto path : {AbsorptionPath::product, AbsorptionPath::sum})

@@ -58,48 +58,5 @@ TEST(FullSpectrum, IsTheFoldOfItsWavelengths) {
   }
 }
 
-Material furnace(Transmission transmission) {
-  Material m;
-  m.transmission = transmission;
-  m.base_ior = 1.2;
-  m.absorption_per_nm = 0;
-  m.albedo = Rgb(1);
-  m.roughness = 0;
-  return m;
-}
-
-// Nothing absorbs: white in every channel. 2 x 3 x 3 tests at 4.5 standard errors by eval, 18 more by
-// sampling.
-TEST(FullSpectrum, WhiteFurnace) {
-  for (const auto transmission : {Transmission::straight, Transmission::refract})
-    for (const double theta : {0.0, 0.6, 1.2}) {
-      const Material m = furnace(transmission);
-      const Wavelengths w = Spectrum(Illuminant::d65, ColorSpace::acescg, 2000).wavelengths(m);
-      const LiveBsdf bsdf(m, w);
-      const Vec3 wo = spherical_direction(theta, 0);
-      const Rgb dirac = Pfmc(m, w).dirac(wo);
-      const auto evaluated = test::albedo_by_eval(bsdf, wo, 20, 16, 5);
-      const auto sampled = test::sample_totals(bsdf, wo, 40000, 4).albedo;
-      for (int c = 0; c < 3; ++c) {
-        // 16 repeats: Student's t.
-        EXPECT_NEAR(dirac[c] + evaluated[c].mean(), 1, 6 * evaluated[c].std_error() + 1e-9)
-            << to_string(transmission) << ' ' << theta << " channel " << c;
-        EXPECT_LT(evaluated[c].std_error(), 0.01);
-        EXPECT_NEAR(sampled[c].mean(), 1, 4.5 * sampled[c].std_error() + 1e-9)
-            << to_string(transmission) << ' ' << theta << " channel " << c;
-      }
-    }
-}
-
-// 8 tests, false alarm 1e-3 in all.
-TEST(FullSpectrum, SamplesFollowThePdf) {
-  for (const auto& [name, material] : test::all_modes()) {
-    const auto [m, spectrum] = skin(material);
-    const auto result =
-        test::chi_square_of_sampling(LiveBsdf(m, spectrum.wavelengths(m)), kOblique, {.samples = 50000}, 1);
-    EXPECT_GT(result.p_value, test::sidak(1e-3, 8)) << name;
-  }
-}
-
 }  // namespace
 }  // namespace sunbeam

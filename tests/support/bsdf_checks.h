@@ -32,22 +32,25 @@ inline double deviation(double a, double error_a, double b, double error_b, doub
 // A direction by cosine 1 - u.x and azimuth 2 pi u.y: solid angle 2 pi du.
 inline Vec3 uniform_hemisphere(const Point2& u) { return direction_from_cosine(1 - u.x, 2 * kPi * u.y); }
 
+// The mean of f(u, rng) over the unit square from one point in each of grid x grid equal cells.
+template <class F>
+auto stratified_mean(int grid, Rng& rng, F f) {
+  decltype(f(Point2(), rng)) total{};
+  for (int i = 0; i < grid; ++i)
+    for (int j = 0; j < grid; ++j)
+      total = total + f(Point2{(i + rng.uniform()) / grid, (j + rng.uniform()) / grid}, rng);
+  return total * (1.0 / (static_cast<double>(grid) * grid));
+}
+
 // Int f(w, rng) dw over the hemisphere from one point in each of grid x grid equal cells, `repeats` times
 // over. The grid removes the variance of a smooth f, so what is left is f's own noise; its standard error is
 // that of the repeats, or an upper bound.
 template <class F>
 auto integrate_stratified(int grid, int repeats, Rng& rng, F f) {
-  using Value = decltype(f(Vec3(), rng));
-  std::vector<Value> totals;
-  for (int k = 0; k < repeats; ++k) {
-    Value total{};
-    for (int i = 0; i < grid; ++i)
-      for (int j = 0; j < grid; ++j) {
-        const Vec3 w = uniform_hemisphere({(i + rng.uniform()) / grid, (j + rng.uniform()) / grid});
-        total = total + f(w, rng) * (2 * kPi);
-      }
-    totals.push_back(total * (1.0 / (static_cast<double>(grid) * grid)));
-  }
+  std::vector<decltype(f(Vec3(), rng))> totals;
+  for (int k = 0; k < repeats; ++k)
+    totals.push_back(stratified_mean(
+        grid, rng, [&](const Point2& u, Rng& r) { return f(uniform_hemisphere(u), r) * (2 * kPi); }));
   return totals;
 }
 

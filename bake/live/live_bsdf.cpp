@@ -5,20 +5,16 @@
 namespace sunbeam {
 
 LiveBsdf::LiveBsdf(const Material& material, const Wavelengths& wavelengths, Technique technique)
-    : pfmc_(material, wavelengths),
-      ggx_(material.roughness),
-      technique_(technique),
-      share_{},
-      transmitted_cosine_(0) {
+    : pfmc_(material, wavelengths), ggx_(material.roughness), technique_(technique), share_{} {
   for (int k = 0; k < pfmc_.wavelengths(); ++k) share_[k + 1] = share_[k] + pfmc_.importance(k);
   for (int i = 0; i <= kIntervals; ++i) {
     const double cosine = static_cast<double>(i) / kIntervals;
     reflect_chance_[i] = pfmc_.reflect_chance(cosine);
-    transmittance_[i] = 1 - pfmc_.mean_reflectance(cosine);
+    leaving_[i] = pfmc_.leaving_shape(cosine);
   }
-  constexpr int kNodes = 32;  // midpoints in sin^2; the density only steers MIS weights
-  for (int i = 0; i < kNodes; ++i)
-    transmitted_cosine_ += kPi / kNodes * look_up(transmittance_, std::sqrt((i + 0.5) / kNodes));
+  double whole = 0;  // Int leaving dwi = 2 pi Int leaving dcos, by trapezia as look_up() has it
+  for (int i = 0; i < kIntervals; ++i) whole += kPi / kIntervals * (leaving_[i] + leaving_[i + 1]);
+  for (double& value : leaving_) value /= std::max(whole, 1e-300);
 }
 
 // Calls use(model) with the model at heroes drawn from `rng`, or at all wavelengths if they are few.
@@ -59,8 +55,7 @@ double LiveBsdf::look_up(const Curve& curve, double cosine) {
 
 double LiveBsdf::mis_pdf(const Vec3& wo, const Vec3& wi) const {
   if (wo.z <= 0 || wi.z <= 0) return 0;
-  const double rest =
-      (1 - look_up(reflect_chance_, wo.z)) * look_up(transmittance_, wi.z) * wi.z / transmitted_cosine_;
+  const double rest = (1 - look_up(reflect_chance_, wo.z)) * look_up(leaving_, wi.z);
   if (ggx_.alpha() == 0) return rest;
   const Vec3 h = normalize(wo + wi);
   return ggx_.reflection_pdf(wo, h) * look_up(reflect_chance_, dot(wo, h)) + rest;

@@ -24,9 +24,9 @@ class LiveBsdf final : public Bsdf {
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override;
   double pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const override;
 
-  // The first-surface density, and for the rest the chance of passing a smooth film at wo times a density
-  // proportional to T(wi) cos(wi): what a smooth film over a white base without pigment gives. Reflectances
-  // come from a table over the cosine. How far it is off is measured in docs/live.md.
+  // The first-surface density, and for the rest the chance of entering a smooth film at wo times the density
+  // of leaving it after a visit of the base; both from tables over the cosine. How far it is off is measured
+  // in docs/live.md.
   double mis_pdf(const Vec3& wo, const Vec3& wi) const override;
 
  private:
@@ -41,9 +41,8 @@ class LiveBsdf final : public Bsdf {
   Ggx ggx_;
   Technique technique_;
   Curve reflect_chance_;                            // of sample(), from outside
-  Curve transmittance_;                             // mean over wavelengths
+  Curve leaving_;                                   // of what comes from below: density over wi, 1/sr
   std::array<double, kMostWavelengths + 1> share_;  // cumulative, of the wavelengths
-  double transmitted_cosine_;                       // Int T(w) cos(w) dw
 };
 
 }  // namespace sunbeam

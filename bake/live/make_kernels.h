@@ -7,15 +7,14 @@
 
 namespace sunbeam::walk {
 
-// flatten: nothing is left to be merged with a copy compiled for another instruction set.
 template <class Arch>
-[[gnu::flatten]] void unidirectional(const Layers& layers, double wi, const double* wo, int exits, Rng& rng,
-                                     double* sums) {
+SUNBEAM_FLATTEN void unidirectional(const Layers& layers, double wi, const double* wo, int exits, Rng& rng,
+                                    double* sums) {
   UnidirectionalWalk<Packet<Arch>>(layers).add(wi, wo, exits, rng, sums);
 }
 
 template <class Arch>
-[[gnu::flatten]] void bidirectional(const Layers& layers, double wi, double wo, Rng& rng, double* sums) {
+SUNBEAM_FLATTEN void bidirectional(const Layers& layers, double wi, double wo, Rng& rng, double* sums) {
   BidirectionalWalk<Packet<Arch>>(layers).add(wi, wo, rng, sums);
 }
 

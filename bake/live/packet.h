@@ -20,7 +20,15 @@ namespace sunbeam::walk {
 
 inline constexpr int kLanes = 16;
 
+// Everything is inlined into the kernels, so that no copy compiled for one instruction set can stand in for
+// another's. Sanitizers would spend minutes on such functions.
+#ifdef __SANITIZE_ADDRESS__
+#define SUNBEAM_INLINE inline
+#define SUNBEAM_FLATTEN
+#else
 #define SUNBEAM_INLINE [[gnu::always_inline]] inline
+#define SUNBEAM_FLATTEN [[gnu::flatten]]
+#endif
 
 // sum_k c_k x^k of ten or twelve terms, in pairs (Estrin): a third of the waiting of Horner's scheme.
 template <class V, std::size_t kTerms>

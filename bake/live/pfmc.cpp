@@ -90,6 +90,12 @@ double Pfmc::reflect_chance(double cos_exterior) const {
   return entry_chance(mean_reflectance(cos_exterior));
 }
 
+double Pfmc::leaving_shape(double cos_exterior) const {
+  const double below2 = 1 - square(layers_.index_ratio) * (1 - square(cos_exterior));
+  if (below2 <= 0) return 0;
+  return (1 - mean_reflectance(cos_exterior)) * layers_.open_guide.density(below2) * cos_exterior;
+}
+
 double Pfmc::first_pdf(const Vec3& wo, const Vec3& wi) const {
   if (layers_.is_smooth() || wo.z <= 0 || wi.z <= 0) return 0;
   const Vec3 h = normalize(wo + wi);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 #include <vector>
 
@@ -85,35 +86,29 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-// How far it is off: it knows neither the roughness of the passage nor that walks leave a dark base steeply.
-// Over eight seeds the worst total variation was 0.11, 0.14 and 0.26, with a spread of 0.003; the bounds are
-// some eight of that away: less than 1e-6 of false alarm.
+// How far it is off: it knows neither the roughness of the passage nor later visits. The total variation was
+// 0.155 at most, with a spread of 0.003 over seeds: the bound is eight of that away, less than 1e-6 of false
+// alarm.
 TEST(MisPdf, TotalVariationIsBounded) {
-  std::vector<double> ratios;
-  for (const auto& [depth, largest] : {std::pair(0.0, 0.13), std::pair(0.5, 0.16), std::pair(2.0, 0.28)})
+  for (const double depth : {0.0, 0.5, 2.0}) {
+    std::vector<double> ratios;
+    double worst = 0;
     for (const double roughness : {0.1, 0.3})
-      for (const auto& [name, m, w] : test::in_both_spectra(test::all_modes(roughness, depth)))
-        for (const double theta : {0.0, 0.7, 1.4}) {
-          const auto found = mismatch(LiveBsdf(m, w), spherical_direction(theta, 0));
-          EXPECT_LT(found.total_variation, largest)
-              << name << ' ' << roughness << ' ' << depth << ' ' << theta;
-          ratios.insert(ratios.end(), found.ratios.begin(), found.ratios.end());
-        }
-  EXPECT_GT(quantile(ratios, 0.01), 0.4);
-  EXPECT_NEAR(quantile(ratios, 0.5), 1, 0.05);
-  EXPECT_LT(quantile(ratios, 0.99), 10);
-}
-
-// The albedo and the absorption path change neither density.
-TEST(MisPdf, IgnoresWhatWalksIgnore) {
-  for (auto [name, m] : test::all_modes()) {
-    const LiveBsdf bsdf(m);
-    m.albedo = Rgb(0.3);
-    m.absorption_path = AbsorptionPath::sum;
-    const LiveBsdf other(m);
-    Rng a(8, 0), b(8, 0);
-    EXPECT_EQ(bsdf.pdf(kOblique, kOblique, a), other.pdf(kOblique, kOblique, b)) << name;
-    EXPECT_EQ(bsdf.mis_pdf(kOblique, kOblique), other.mis_pdf(kOblique, kOblique)) << name;
+      for (const Rgb& albedo : {Rgb(0.3), Rgb(0.9)})
+        for (const auto& [name, m, w] : test::in_both_spectra(test::all_modes(roughness, depth, albedo)))
+          for (const double theta : {0.0, 0.7, 1.4}) {
+            const auto found = mismatch(LiveBsdf(m, w), spherical_direction(theta, 0));
+            EXPECT_LT(found.total_variation, 0.18)
+                << name << ' ' << roughness << ' ' << depth << ' ' << theta;
+            worst = std::max(worst, found.total_variation);
+            ratios.insert(ratios.end(), found.ratios.begin(), found.ratios.end());
+          }
+    std::printf(
+        "optical depth %g: total variation up to %.3f, mis_pdf / pdf 1 %% %.2f, median %.3f, 99 %% %.2f\n",
+        depth, worst, quantile(ratios, 0.01), quantile(ratios, 0.5), quantile(ratios, 0.99));
+    EXPECT_GT(quantile(ratios, 0.01), 0.35);
+    EXPECT_NEAR(quantile(ratios, 0.5), 1, 0.03);
+    EXPECT_LT(quantile(ratios, 0.99), 1.6);
   }
 }
 

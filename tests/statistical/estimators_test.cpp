@@ -80,27 +80,6 @@ TEST(Estimators, AgreeWithThePlainWalk) {
   }
 }
 
-// The bidirectional estimator at the rows of the reference (the unidirectional one: reference_test.cpp),
-// known to 0.1 %. 61 rows at 4.5 standard errors: 4e-4. Rows darker than 1e-9 live on rare paths through
-// grazing directions and are known less well.
-TEST(Estimators, BidirectionalAtEveryRowOfTheReference) {
-  int known = 0, rows = 0;
-  for (const auto& row : test::read_reference("eval.csv")) {
-    const Material material = test::material_of(row);
-    const Pfmc pfmc(material, Wavelengths::monochromatic(material, row.number("wavelength_nm")));
-    const Vec3 wi = spherical_direction(radians(row.number("theta_i_deg")), 0);
-    const Vec3 wo = spherical_direction(radians(row.number("theta_o_deg")), radians(row.number("phi_deg")));
-    const double rest = row.number("rest");
-    Rng rng(13, row.line);
-    const auto found = mean_rest(pfmc, wo, wi, Technique::bidirectional, 1e-3, 200000, rng)[1];
-    EXPECT_NEAR(found.mean(), rest, 4.5 * found.std_error() + 1e-5 * rest) << "eval.csv:" << row.line;
-    known += found.std_error() <= 1e-3 * rest;
-    ++rows;
-    EXPECT_TRUE(rest < 1e-9 || found.std_error() <= 1e-3 * rest) << "eval.csv:" << row.line;
-  }
-  EXPECT_GE(known, rows - 3);
-}
-
 // What other renderers call a coated diffuse, whose rest is known in closed form: 0.05 % (model of the
 // benchmark bench_live). 8 tests at 4.5 standard errors.
 TEST(Estimators, CoatedDiffuseTo0_05Percent) {

@@ -55,6 +55,12 @@ class Info(TableFileTest):
                 self.assertRegex(info["recipe_hash"], r"^[0-9a-f]{32}$")
                 self.assertEqual(f"sunbeam {info['tool_version']}\n", self.succeed("--version").out)
 
+    def test_the_recipe_chooses_the_estimator(self):
+        self.succeed("bake", "tiny.toml", "-o", "bidirectional.exr", "--set", "accuracy.estimator=bidirectional")
+        info = json.loads(self.succeed("info", "bidirectional.exr", "--json").out)
+        self.assertEqual(info["estimator"], "pfmc-bidirectional")
+        self.succeed("verify", "bidirectional.exr", "--points", "10", "--truth", "bidirectional")
+
     def test_axes(self):
         expected = {
             "film_thickness_nm": ("nm", [200, 400]),

@@ -22,16 +22,16 @@ class Cell {
     sum_of_squares_ += estimate * estimate;
   }
 
-  Rgb mean_of(double walks) const { return sum_ / walks; }
+  Rgb mean_of(double count) const { return sum_ / count; }
 
-  Rgb standard_error(double walks) const {
-    return transform(sum_of_squares_ / walks - square_each(mean_of(walks)),
-                     [walks](double variance) { return std::sqrt(std::max(0.0, variance) / (walks - 1)); });
+  Rgb standard_error(double count) const {
+    return transform(sum_of_squares_ / count - square_each(mean_of(count)),
+                     [count](double variance) { return std::sqrt(std::max(0.0, variance) / (count - 1)); });
   }
 
   // The stop rule: mean over channels known to `noise` of its value, or of kDarkestValue.
-  bool is_known(double noise, double walks) const {
-    return mean(standard_error(walks)) <= noise * std::max(mean_abs(mean_of(walks)), kDarkestValue);
+  bool is_known(double noise, double count) const {
+    return mean(standard_error(count)) <= noise * std::max(mean_abs(mean_of(count)), kDarkestValue);
   }
 
  private:

@@ -1,7 +1,7 @@
 #include "bake/film_tables.h"
 
 #include "bake/live/film_interface.h"
-#include "bake/live/pfmc.h"
+#include "bake/optics/wavelength_quadrature.h"
 
 namespace sunbeam {
 namespace {
@@ -100,17 +100,19 @@ void bake_film(const Recipe& recipe, Table& table) {
   if (!recipe.material.is_smooth())
     table.film_transmittance = NdArray("film_transmittance", axes, Precision::single_float);
 
+  const Wavelengths wavelengths = recipe.spectrum.wavelengths(recipe.material);
+  const WavelengthQuadrature spectrum{wavelengths.nm, wavelengths.weight};
   for (std::size_t b = 0; b < ior.size(); ++b) {
     Material material = recipe.material;
     material.base_ior = ior.nodes[b];
     const auto weights = material.is_smooth() ? std::vector<double>() : crossing_weights(material, cosine);
     for (std::size_t a = 0; a < thickness.size(); ++a) {
       material.film_thickness_nm = thickness.nodes[a];
-      const Pfmc model(material, recipe.spectrum.wavelengths(material));
+      const ThinFilm film = ThinFilm::of(material);
       const std::size_t row = a * table.film_reflectance.stride(0) + b * table.film_reflectance.stride(1);
       for (std::size_t c = 0; c < kCosines; ++c)
-        table.film_reflectance.set(row + c,
-                                   model.film_reflectance(std::max(cosine.nodes[c], kSmallestCosine)));
+        table.film_reflectance.set(
+            row + c, spectrum.fold_film(film, std::max(cosine.nodes[c], kSmallestCosine)).reflectance);
       if (material.is_smooth()) continue;
       for (std::size_t c = 0; c < kCosines; ++c)
         table.film_transmittance.set(

@@ -115,8 +115,8 @@ template <class Call>
 Estimate mean_of_estimates(std::int64_t samples, Call call) {
   Cell cell;
   for (std::int64_t k = 0; k < samples; ++k) cell.add(call());
-  const auto walks = static_cast<double>(samples);
-  return {cell.mean_of(walks), cell.standard_error(walks)};
+  const auto count = static_cast<double>(samples);
+  return {cell.mean_of(count), cell.standard_error(count)};
 }
 
 // The rows of a live recipe at one material, by PFMC or exactly.

@@ -40,7 +40,8 @@ int run_bake(const BakeOptions& options) {
   std::size_t nodes = 1;
   for (const Axis& axis : recipe.grid) nodes *= axis.size();
   fmt::print(stderr, "{}: {} parameter nodes, {} x {} x {} angles, values by {}\n", options.recipe, nodes,
-             recipe.table.angles, recipe.table.angles, recipe.table.azimuths, name_of(Estimator::pfmc));
+             recipe.table.angles, recipe.table.angles, recipe.table.azimuths,
+             name_of(recipe.accuracy.estimator));
   SweepSettings settings;
   settings.seed = options.seed;
   settings.threads = options.threads;
@@ -51,7 +52,7 @@ int run_bake(const BakeOptions& options) {
   const std::string bytes = table_bytes(table, options.output);
   write_file_atomically(options.output, bytes);
   fmt::print(stderr, "{}: {} bytes, {} walks of {}\n", options.output, bytes.size(), table.info.at("samples"),
-             name_of(Estimator::pfmc));
+             table.info.at("estimator"));
   return 0;
 }
 

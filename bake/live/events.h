@@ -123,9 +123,9 @@ class Events {
     return cross(w, meet(w, rng), layers_.index_ratio);
   }
 
-  // G1 of w over that of m.
-  SUNBEAM_INLINE V g1_ratio(const V& w, const V& m) const {
-    return w * (m + facets_.root(m)) / (m * (w + facets_.root(w)));
+  // G1 of a over that of b; 1 for a smooth film.
+  SUNBEAM_INLINE V g1_ratio(const V& a, const V& b) const {
+    return a * (b + facets_.root(b)) / (b * (a + facets_.root(a)));
   }
 
   SUNBEAM_INLINE Reflection<V> mirror(const V& u, const Normal& h) const {

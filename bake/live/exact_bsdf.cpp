@@ -3,6 +3,7 @@
 #include <array>
 
 #include "bake/optics/vector_clones.h"
+#include "sunbeam/core/bracket.h"
 
 namespace sunbeam {
 namespace {
@@ -20,7 +21,7 @@ constexpr double kSmallestCosine = 1e-4;  // the chance at grazing is taken here
 }  // namespace
 
 ExactBsdf::ExactBsdf(const Material& material, const Wavelengths& wavelengths)
-    : film_{material.exterior_ior, material.film_ior, material.base_ior, material.film_thickness_nm},
+    : film_(ThinFilm::of(material)),
       smooth_(material.is_smooth()),
       rarer_base_(material.base_ior < material.exterior_ior),
       ggx_(material.roughness) {
@@ -160,9 +161,8 @@ Rgb ExactBsdf::rest(const Vec3& wo, const Vec3& wi) const {
 }
 
 double ExactBsdf::first_chance(double cosine) const {
-  const double x = std::clamp(cosine, 0.0, 1.0) * (kChanceNodes - 1);
-  const auto lower = std::min(static_cast<std::size_t>(x), kChanceNodes - 2);
-  return lerp(x - static_cast<double>(lower), chance_[lower], chance_[lower + 1]);
+  const Bracket at = even_bracket(cosine, chance_.size());
+  return lerp(at.upper_weight, chance_[at.lower], chance_[at.upper]);
 }
 
 std::optional<BsdfSample> ExactBsdf::sample(const Vec3& wo, Rng& rng) const {

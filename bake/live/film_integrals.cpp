@@ -181,7 +181,7 @@ FilmIntegrals::FilmIntegrals(const Material& material, const Rgb& wavelengths_nm
     : material_(material),
       resolution_(resolution),
       interface_(material, wavelengths_nm),
-      film_{material.exterior_ior, material.film_ior, material.base_ior, material.film_thickness_nm},
+      film_(ThinFilm::of(material)),
       film_below_(material.transmission == Transmission::straight ? film_ : film_.reversed()),
       wavelengths_nm_(wavelengths_nm),
       index_ratio_(interface_.has_glossy_crossing() ? material.exterior_ior / material.base_ior : 1),

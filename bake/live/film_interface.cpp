@@ -3,9 +3,6 @@
 namespace sunbeam {
 namespace {
 
-// Indices closer than this are the same medium: the half vector of a passage has no digits left.
-constexpr double kIndexMatch = 1e-7;
-
 // Snell's law at a facet: the far-side counterpart of `w`, both on the side of `h` (h.w > 0 is kept).
 std::optional<Vec3> refract(const Vec3& w, const Vec3& h, double index_ratio) {
   const double cosine = dot(w, h);
@@ -19,18 +16,15 @@ std::optional<Vec3> refract(const Vec3& w, const Vec3& h, double index_ratio) {
 }  // namespace
 
 FilmInterface::FilmInterface(const Material& material, const Rgb& wavelengths_nm)
-    : film_{material.exterior_ior, material.film_ior, material.base_ior, material.film_thickness_nm},
+    : film_(ThinFilm::of(material)),
       film_below_(film_),
       wavelengths_nm_(wavelengths_nm),
-      index_ratio_(1),
+      index_ratio_(bending_index_ratio(material)),
       rough_(!material.is_smooth()),
-      bends_(false),
+      bends_(index_ratio_ != 1),
       straight_(material.transmission == Transmission::straight),
       ggx_(material.roughness) {
-  if (straight_) return;
-  film_below_ = film_.reversed();
-  bends_ = std::abs(material.exterior_ior / material.base_ior - 1) > kIndexMatch;
-  if (bends_) index_ratio_ = material.exterior_ior / material.base_ior;
+  if (!straight_) film_below_ = film_.reversed();
 }
 
 Rgb FilmInterface::first_surface(const Vec3& wo, const Vec3& wi) const {

@@ -5,18 +5,11 @@
 namespace sunbeam::walk {
 namespace {
 
-// Indices closer than this are the same medium: the half vector of a passage has no digits left.
-constexpr double kIndexMatch = 1e-7;
-
 bool is_even(const FilmPhases& phases) {
   const auto& k = phases.k;
   for (int j = 2; j < phases.count; ++j)
     if (std::abs(k[j] - 2 * k[j - 1] + k[j - 2]) > 1e-12 * k[j]) return false;
   return phases.count > 3;  // a recurrence for fewer saves nothing
-}
-
-ThinFilm film_of(const Material& material) {
-  return {material.exterior_ior, material.film_ior, material.base_ior, material.film_thickness_nm};
 }
 
 FilmPhases phases_of(const Material& material, const Wavelengths& wavelengths) {
@@ -101,12 +94,12 @@ class BelowFilm {
 }  // namespace
 
 Layers::Layers(const Material& material, const Wavelengths& wavelengths)
-    : film(film_of(material)),
+    : film(ThinFilm::of(material)),
       film_below(film),
       phases(phases_of(material, wavelengths)),
       alpha(material.roughness),
-      index_ratio(1),
-      bends(false),
+      index_ratio(bending_index_ratio(material)),
+      bends(index_ratio != 1),
       straight(material.transmission == Transmission::straight),
       count(static_cast<int>(wavelengths.size())),
       albedo{},
@@ -116,11 +109,7 @@ Layers::Layers(const Material& material, const Wavelengths& wavelengths)
       guide({}),
       open_guide({}),
       worth_below(1) {
-  if (!straight) {
-    film_below = FilmSide(film_of(material).reversed());
-    bends = std::abs(material.exterior_ior / material.base_ior - 1) > kIndexMatch;
-    if (bends) index_ratio = material.exterior_ior / material.base_ior;
-  }
+  if (!straight) film_below = FilmSide(ThinFilm::of(material).reversed());
   for (int j = 0; j < count; ++j) {
     albedo[j] = wavelengths.albedo[j];
     tau[j] = material.optical_depth() * wavelengths.absorption[j];

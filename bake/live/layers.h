@@ -35,10 +35,9 @@ struct Layers {
   Guide open_guide;    // for walks that may leave: towards what gets out, now or later
   double worth_below;  // of the light that enters the film, about what leaves again; at least kLeastWorth
 
-  // Keeps `picks` of the wavelengths: the k-th becomes what was number which(k).
+  // Takes `picks` of the wavelengths of `all`, the same material: the k-th becomes its number which(k).
   template <class Which>
-  void pick(std::size_t picks, Which which) {
-    const Layers all(*this);
+  void pick(const Layers& all, std::size_t picks, Which which) {
     count = phases.count = static_cast<int>(picks);
     phases.is_even = false;
     for (std::size_t k = 0; k < picks; ++k) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sunbeam/core/bracket.h"
+
 namespace sunbeam {
 
 LiveBsdf::LiveBsdf(const Material& material, const Wavelengths& wavelengths, Technique technique)
@@ -48,9 +50,8 @@ double LiveBsdf::pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const {
 }
 
 double LiveBsdf::look_up(const Curve& curve, double cosine) {
-  const double x = std::clamp(cosine, 0.0, 1.0) * kIntervals;
-  const int i = std::min(static_cast<int>(x), kIntervals - 1);
-  return lerp(x - i, curve[i], curve[i + 1]);
+  const Bracket at = even_bracket(cosine, curve.size());
+  return lerp(at.upper_weight, curve[at.lower], curve[at.upper]);
 }
 
 double LiveBsdf::mis_pdf(const Vec3& wo, const Vec3& wi) const {

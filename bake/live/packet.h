@@ -1,4 +1,4 @@
-// Eight numbers worked on side by side: the lanes of a packet are independent walks.
+// Sixteen numbers worked on side by side: the lanes of a packet are independent walks.
 //
 // A thin layer over xsimd that keeps the number of lanes whatever the width of the machine's registers, so
 // that every instruction set gives the same bits (none of those used fuses multiplications and additions).
@@ -76,7 +76,7 @@ struct Packet {
   SUNBEAM_INLINE Packet(double value) : low(value), high(value) {}
   SUNBEAM_INLINE Packet(const Half& l, const Half& h) : low(l), high(h) {}
 
-  // f(0), f(1), ...; not by way of memory, which would wait for eight small stores.
+  // f(0), f(1), ...; not by way of memory, which would wait for many small stores.
   template <class F>
   SUNBEAM_INLINE static Packet generate(F f) {
     if constexpr (!kIsPair)
@@ -200,7 +200,7 @@ SUNBEAM_INLINE V cos_of_phase(const V& x) {
   return sum * (V(1) - V(8) * squared(odd));
 }
 
-// Rows of eight numbers that lie one in each eighth of [0, 1), in random order; see Uniform.
+// Rows of numbers that lie one in each of kLanes equal parts of [0, 1), in random order; see Uniform.
 inline constexpr std::uint32_t kStrata = 64;
 extern const std::array<std::array<double, kLanes>, kStrata> kStratum;
 

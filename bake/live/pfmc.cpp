@@ -38,7 +38,7 @@ Pfmc::Pfmc(const Material& material, const Wavelengths& wavelengths, const walk:
 
 Pfmc Pfmc::at(std::span<const Pick> picks) const {
   Pfmc other(*this);
-  other.layers_.pick(picks.size(), [&](std::size_t k) { return picks[k].wavelength; });
+  other.layers_.pick(layers_, picks.size(), [&](std::size_t k) { return picks[k].wavelength; });
   for (std::size_t k = 0; k < picks.size(); ++k) {
     other.weight_[k] = picks[k].factor * weight_[picks[k].wavelength];
     other.importance_[k] = 1.0 / static_cast<double>(picks.size());
@@ -183,7 +183,7 @@ double Pfmc::leave_pdf(const Vec3& wi, Rng& rng, double& cosine) const {
   const double pass_chance = 1 - mean_reflectance(facet.cosine);
   if (!layers_.bends) return pass_chance;
   const double solid_angles = square(layers_.index_ratio) * wi.z / cosine;
-  return pass_chance * solid_angles * (layers_.is_smooth() ? 1 : 1 / events.g1_ratio(wi.z, cosine));
+  return pass_chance * solid_angles * events.g1_ratio(cosine, wi.z);
 }
 
 double Pfmc::estimate_pdf(const Vec3& wo, const Vec3& wi, Rng& rng, const Pfmc& below) const {

@@ -49,7 +49,6 @@ class Steps {
  public:
   SUNBEAM_INLINE explicit Steps(const Layers& layers) : layers_(layers), events_(layers) {}
 
-  const Layers& layers() const { return layers_; }
   const Events<V>& events() const { return events_; }
 
   // The passage from outside along w.

@@ -11,6 +11,7 @@
 #pragma once
 
 #include "sunbeam/core/vec.h"
+#include "sunbeam/material.h"
 
 namespace sunbeam {
 
@@ -20,6 +21,9 @@ struct ThinFilm {
   double base_ior;      // n2, of the medium beyond
   double thickness_nm;  // d0 >= 0
 
+  static ThinFilm of(const Material& m) {
+    return {m.exterior_ior, m.film_ior, m.base_ior, m.film_thickness_nm};
+  }
   ThinFilm reversed() const { return {base_ior, film_ior, exterior_ior, thickness_nm}; }
 };
 
@@ -31,6 +35,14 @@ struct FilmPower {
 // Powers at the cosine of the angle in the exterior medium (0 <= cos_exterior <= 1), for three vacuum
 // wavelengths in nm at once. R = 1 where exterior_ior * sin >= base_ior.
 FilmPower airy(const ThinFilm& film, double cos_exterior, const Rgb& wavelengths_nm);
+
+// n0 / n2 if light bends when it passes the film, else 1: "straight", or media so alike that the half vector
+// of a passage has no digits left.
+inline double bending_index_ratio(const Material& material) {
+  constexpr double kIndexMatch = 1e-7;
+  const double ratio = material.exterior_ior / material.base_ior;
+  return material.transmission == Transmission::straight || std::abs(ratio - 1) <= kIndexMatch ? 1 : ratio;
+}
 
 // Squared cosine on the far side by Snell's law; negative under total reflection. Arranged so that equal
 // media keep every digit at grazing.

@@ -56,7 +56,9 @@ class Info(TableFileTest):
                 self.assertEqual(f"sunbeam {info['tool_version']}\n", self.succeed("--version").out)
 
     def test_the_recipe_chooses_the_estimator(self):
-        self.succeed("bake", "tiny.toml", "-o", "bidirectional.exr", "--set", "accuracy.estimator=bidirectional")
+        baked = self.succeed("bake", "tiny.toml", "-o", "bidirectional.exr", "--set", "accuracy.estimator=bidirectional")
+        self.assertEqual(baked.err.count("pfmc-bidirectional"), 2)
+        self.assertNotIn("pfmc-unidirectional", baked.err)
         info = json.loads(self.succeed("info", "bidirectional.exr", "--json").out)
         self.assertEqual(info["estimator"], "pfmc-bidirectional")
         self.succeed("verify", "bidirectional.exr", "--points", "10", "--truth", "bidirectional")

@@ -5,13 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace sunbeam {
+#include "sunbeam/core/bracket.h"
 
-// Two neighbouring nodes and the weight of the upper one.
-struct Bracket {
-  std::size_t lower = 0, upper = 0;
-  double upper_weight = 0;
-};
+namespace sunbeam {
 
 // Interpolation is linear in the coordinate u(x) = (x - origin)^(1 / power); power 1 is plain linear, 2 and 3
 // suit quantities that behave like a square or cube root at the origin, which no node may lie below. A

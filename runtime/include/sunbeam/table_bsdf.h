@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "sunbeam/bsdf.h"
+#include "sunbeam/core/bracket.h"
 #include "sunbeam/core/piecewise.h"
 #include "sunbeam/ggx.h"
 #include "sunbeam/table.h"
@@ -19,13 +20,6 @@
 namespace sunbeam {
 
 enum class OutsideGrid { clamp, refuse };
-
-// Where a cosine lies among at least two nodes spread evenly over [0, 1]; clamped.
-inline Bracket even_bracket(double cosine, std::size_t nodes) {
-  const double x = std::clamp(cosine, 0.0, 1.0) * static_cast<double>(nodes - 1);
-  const auto lower = std::min(static_cast<std::size_t>(x), nodes - 2);
-  return {lower, lower + 1, x - static_cast<double>(lower)};
-}
 
 // A colour over cos(theta) in [0, 1], equally spaced nodes, linear between.
 class CosineCurve {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <memory>
 #include <ostream>
+#include <set>
 
 #include "bake/cell.h"
 #include "bake/csv.h"
@@ -56,6 +57,7 @@ class PointReader {
     if (quantity == Quantity::brdf) {
       theta_o_ = require("theta_o_deg");
       phi_ = require("phi_deg");
+      phi_i_ = csv.column("phi_i_deg");
     }
     for (const auto& name : result_names(quantity, is_monochromatic()))
       if (csv.column(name))
@@ -70,8 +72,9 @@ class PointReader {
 
   Point point(std::size_t row_index) const {
     const CsvRow& row = csv_.rows[row_index];
-    Point point{polar(row, theta_i_, 0), {0, 0, 1}, {}, row_index};
-    if (theta_o_) point.wo = polar(row, *theta_o_, csv_.number(row, *phi_, -3600, 3600, true) * kPi / 180);
+    const double phi_i = phi_i_ ? azimuth_deg(row, *phi_i_) : 0;
+    Point point{polar(row, theta_i_, phi_i), {0, 0, 1}, {}, row_index};
+    if (theta_o_) point.wo = polar(row, *theta_o_, phi_i + azimuth_deg(row, *phi_));
     if (wavelength_) point.wavelength_nm = csv_.number(row, *wavelength_, 100, 10000, true);
     return point;
   }
@@ -85,6 +88,8 @@ class PointReader {
         throw Error(fmt::format("{}:{}: {}", csv_.name, row.line, error.what()));
       }
     }
+    if (const auto defect = material.defect())
+      throw Error(fmt::format("{}:{}: {}", csv_.name, row.line, defect->message()));
     return material;
   }
 
@@ -96,13 +101,16 @@ class PointReader {
           fmt::format("{}: column '{}' is missing; found: {}", csv_.name, key, fmt::join(csv_.header, ", ")));
     return *column;
   }
-  Vec3 polar(const CsvRow& row, std::size_t column, double phi) const {
-    return spherical_direction(csv_.number(row, column, 0, 90, false) * kPi / 180, phi);
+  double azimuth_deg(const CsvRow& row, std::size_t column) const {
+    return csv_.number(row, column, -3600, 3600, true);
+  }
+  Vec3 polar(const CsvRow& row, std::size_t theta, double phi_deg) const {
+    return spherical_direction(csv_.number(row, theta, 0, 90, false) * kPi / 180, phi_deg * kPi / 180);
   }
 
   const Csv& csv_;
   std::size_t theta_i_ = 0;
-  std::optional<std::size_t> theta_o_, phi_, wavelength_;
+  std::optional<std::size_t> theta_o_, phi_, phi_i_, wavelength_;
   std::vector<std::size_t> material_columns_;
 };
 
@@ -235,6 +243,15 @@ using RowAndChannel = std::pair<Results, std::optional<int>>;
 
 // Material and wavelengths of the rows of a live recipe.
 class LiveRows {
+  template <class Call>
+  auto naming_row(std::size_t k, Call call) const {
+    try {
+      return call();
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}:{}: {}", csv_.name, csv_.rows[k].line, error.what()));
+    }
+  }
+
  public:
   LiveRows(const Material& material, const Spectrum& spectrum, const Csv& csv, const PointReader& reader)
       : material_(material), spectrum_(spectrum), csv_(csv), reader_(reader) {}
@@ -248,11 +265,12 @@ class LiveRows {
   Wavelengths wavelengths(std::size_t k) const {
     const auto nm = reader_.point(k).wavelength_nm;
     const Material row = material(k);
-    try {
-      return nm ? spectrum_.monochromatic(row, *nm) : spectrum_.wavelengths(row);
-    } catch (const Error& error) {
-      throw Error(fmt::format("{}:{}: {}", csv_.name, csv_.rows[k].line, error.what()));
-    }
+    return naming_row(k, [&] { return nm ? spectrum_.monochromatic(row, *nm) : spectrum_.wavelengths(row); });
+  }
+
+  // What `wanted` stands for in this row.
+  Estimator estimator(std::size_t k, Estimator wanted) const {
+    return naming_row(k, [&] { return estimator_for_eval(wanted, material(k)); });
   }
 
  private:
@@ -295,17 +313,25 @@ class TableRows {
 
 }  // namespace
 
-void evaluate_points_live(const Material& material, const Spectrum& spectrum, std::istream& in,
-                          const std::string& name, const PointsSettings& settings, std::ostream& out) {
+std::set<std::string> evaluate_points_live(const Material& material, const Spectrum& spectrum,
+                                           std::istream& in, const std::string& name,
+                                           const PointsSettings& settings, std::ostream& out) {
   const Csv csv = read_csv(in, name);
   const PointReader reader(csv, settings.quantity);
   const LiveRows rows(material, spectrum, csv, reader);
-  for (std::size_t k = 0; k < csv.rows.size(); ++k) rows.wavelengths(k);
+  std::set<std::string> used;
+  for (std::size_t k = 0; k < csv.rows.size(); ++k) {
+    rows.wavelengths(k);
+    used.insert(name_of(rows.estimator(k, settings.estimator)));
+  }
   print_rows(csv, reader, settings.quantity, out, [&](std::size_t k) -> RowAndChannel {
     const Point point = reader.point(k);
-    return {live_results(rows.material(k), rows.wavelengths(k), point, settings),
+    PointsSettings of_row = settings;
+    of_row.estimator = rows.estimator(k, settings.estimator);
+    return {live_results(rows.material(k), rows.wavelengths(k), point, of_row),
             point.wavelength_nm ? std::optional(0) : std::nullopt};
   });
+  return used;
 }
 
 void evaluate_points_table(const Table& table, std::istream& in, const std::string& name,

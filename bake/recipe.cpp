@@ -1,6 +1,7 @@
 #include "bake/recipe.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "runtime/config/config.h"
 #include "sunbeam/core/error.h"
@@ -18,27 +19,20 @@ Range range_of(std::string_view key) {
 
 constexpr const char* kRoughness = "roughness";
 
-// [alpha_u, alpha_v], which have to be equal.
-double read_roughness_pair(const ConfigTable& config) {
-  const auto values = config.numbers(kRoughness, range_of(kRoughness));
-  if (values.size() != 2)
+// One value, or [alpha_u, alpha_v].
+Roughness read_roughness(const ConfigTable& config, const Roughness& fallback) {
+  if (!config.has(kRoughness)) return fallback;
+  const auto values = config.is_list(kRoughness)
+                          ? config.numbers(kRoughness, range_of(kRoughness))
+                          : std::vector{config.number(kRoughness, range_of(kRoughness))};
+  if (values.empty() || values.size() > 2)
     config.fail(kRoughness,
                 fmt::format("found {} numbers; allowed: one number or a list of 2", values.size()));
-  if (values[0] != values[1])
+  const Roughness roughness(values.front(), values.back());
+  if (!roughness.is_allowed())
     config.fail(kRoughness,
-                fmt::format("found [{:g}, {:g}]; allowed: two equal values (an anisotropic film is not "
-                            "supported yet)",
-                            values[0], values[1]));
-  return values[0];
-}
-
-double read_roughness(const ConfigTable& config, double fallback) {
-  const double value = config.is_list(kRoughness) ? read_roughness_pair(config)
-                                                  : config.number(kRoughness, range_of(kRoughness), fallback);
-  if (value > 0 && value < kMinRoughness)
-    config.fail(kRoughness,
-                fmt::format("found {:g}; allowed: 0 (smooth) or {:g} to 1", value, kMinRoughness));
-  return value;
+                fmt::format("found {}; allowed: {}", fmt::join(values, ", "), allowed_roughness()));
+  return roughness;
 }
 
 // All but the albedo, which waits for the spectrum.
@@ -55,7 +49,11 @@ Material read_material(const ConfigTable& config) {
   number("base_ior", m.base_ior);
   number("absorption_per_nm", m.absorption_per_nm);
   number("pigment_thickness_nm", m.pigment_thickness_nm);
+  number("scattering_per_nm", m.scattering_per_nm);
+  number("anisotropy", m.anisotropy);
   m.roughness = read_roughness(config, m.roughness);
+  m.microfacet = static_cast<Microfacet>(config.choice("microfacet", {"single", "multiple"}, 0));
+  if (const auto defect = m.defect()) config.fail(defect->key, defect->text);
   return m;
 }
 

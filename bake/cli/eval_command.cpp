@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <iostream>
 #include <sstream>
@@ -20,13 +21,11 @@ Quantity parse_quantity(const std::string& name) {
 bool is_table(const std::string& path) { return extension(path) == ".exr" || extension(path) == ".vdb"; }
 
 // What made the values, for standard error; empty for a table, which says so itself.
-std::string evaluate_recipe(const EvalOptions& options, PointsSettings settings, std::istream& csv,
+std::string evaluate_recipe(const EvalOptions& options, const PointsSettings& settings, std::istream& csv,
                             const std::string& name) {
   const Recipe recipe = load_recipe(options.source, options.overrides);
-  if (settings.estimator == Estimator::automatic)
-    settings.estimator = automatic_for_eval(recipe.material).estimator;
-  evaluate_points_live(recipe.material, recipe.spectrum, csv, name, settings, std::cout);
-  return settings.quantity == Quantity::film ? "" : name_of(settings.estimator);
+  const auto used = evaluate_points_live(recipe.material, recipe.spectrum, csv, name, settings, std::cout);
+  return settings.quantity == Quantity::film ? "" : fmt::format("{}", fmt::join(used, ", "));
 }
 
 std::string evaluate(const EvalOptions& options, std::istream& csv, const std::string& name) {

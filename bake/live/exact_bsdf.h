@@ -37,9 +37,9 @@ class ExactBsdf final : public Bsdf {
  public:
   // A rough film's A_k is dear, and oscillates with the thickness.
   static constexpr double kThickestRoughNm = 5000;
-  // Path "sum", and a film that is smooth or no thicker than that.
+  // A plain material with path "sum", and a film that is smooth or no thicker than that.
   static bool is_valid_for(const Material& material) {
-    return material.absorption_path == AbsorptionPath::sum &&
+    return material.is_plain() && material.absorption_path == AbsorptionPath::sum &&
            (material.is_smooth() || material.film_thickness_nm <= kThickestRoughNm);
   }
 

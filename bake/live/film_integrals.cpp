@@ -207,7 +207,7 @@ int FilmIntegrals::oscillation_panels(const ThinFilm& film, double low, double h
 
 // More where a wide lobe sees a thick film oscillate.
 int FilmIntegrals::visible_nodes() const {
-  const double waves = (phase(film_, 1) - phase(film_, 0)) * std::min(1.0, 4 * ggx_.alpha());
+  const double waves = (phase(film_, 1) - phase(film_, 0)) * std::min(1.0, 4 * material_.roughness.u);
   const int wanted = resolution_.visible + static_cast<int>(kVisibleNodesPerRadian * waves);
   return std::min(wanted, std::max(kMaxVisibleNodes, resolution_.visible));
 }
@@ -217,7 +217,7 @@ int FilmIntegrals::visible_nodes() const {
 template <class F>
 void FilmIntegrals::visit_visible(const Vec3& w, bool only_mirrored, F visit) const {
   const Vec3 from = direction_from_cosine(w.z, 0);
-  const VisibleNormals visible(from, ggx_.alpha(), film_, index_ratio_);
+  const VisibleNormals visible(from, material_.roughness.u, film_, index_ratio_);
   for_each_node(visible.azimuth_edges(), visible_azimuths_, [&](double azimuth, double dazimuth) {
     auto edges = visible.polar_edges(azimuth);
     const double end = only_mirrored ? visible.mirrored_end(azimuth, edges.back()) : edges.back();
@@ -320,8 +320,9 @@ void FilmIntegrals::visit_facets(Event event, F visit) const {
   const double critical = critical_cosine(film_of(event));
   for (int i = 0; i < normals_.size(); ++i) {
     const double x = normals_.node[i];
-    const double theta = std::atan2(ggx_.alpha() * x, 1 - x);
-    const double dtheta = ggx_.alpha() / (square(1 - x) + square(ggx_.alpha() * x)) * normals_.weight[i];
+    const double theta = std::atan2(material_.roughness.u * x, 1 - x);
+    const double dtheta =
+        material_.roughness.u / (square(1 - x) + square(material_.roughness.u * x)) * normals_.weight[i];
     const double normal_weight =
         2 * kPi * std::sin(theta) * dtheta * ggx_.d({std::sin(theta), 0, std::cos(theta)});
     // Below sin(theta_h) part of the azimuths is under the horizon.

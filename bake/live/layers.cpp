@@ -97,7 +97,7 @@ Layers::Layers(const Material& material, const Wavelengths& wavelengths)
     : film(ThinFilm::of(material)),
       film_below(film),
       phases(phases_of(material, wavelengths)),
-      alpha(material.roughness),
+      alpha(material.roughness.u),
       index_ratio(bending_index_ratio(material)),
       bends(index_ratio != 1),
       straight(material.transmission == Transmission::straight),

@@ -7,7 +7,11 @@
 namespace sunbeam {
 
 LiveBsdf::LiveBsdf(const Material& material, const Wavelengths& wavelengths, Technique technique)
-    : pfmc_(material, wavelengths), ggx_(material.roughness), technique_(technique), share_{} {
+    : pfmc_(material, wavelengths),
+      ggx_(material.roughness),
+      is_smooth_(material.is_smooth()),
+      technique_(technique),
+      share_{} {
   for (int k = 0; k < pfmc_.wavelengths(); ++k) share_[k + 1] = share_[k] + pfmc_.importance(k);
   for (int i = 0; i <= kIntervals; ++i) {
     const double cosine = static_cast<double>(i) / kIntervals;
@@ -57,7 +61,7 @@ double LiveBsdf::look_up(const Curve& curve, double cosine) {
 double LiveBsdf::mis_pdf(const Vec3& wo, const Vec3& wi) const {
   if (wo.z <= 0 || wi.z <= 0) return 0;
   const double rest = (1 - look_up(reflect_chance_, wo.z)) * look_up(leaving_, wi.z);
-  if (ggx_.alpha() == 0) return rest;
+  if (is_smooth_) return rest;
   const Vec3 h = normalize(wo + wi);
   return ggx_.reflection_pdf(wo, h) * look_up(reflect_chance_, dot(wo, h)) + rest;
 }

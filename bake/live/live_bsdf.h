@@ -39,6 +39,7 @@ class LiveBsdf final : public Bsdf {
 
   Pfmc pfmc_;
   Ggx ggx_;
+  bool is_smooth_;
   Technique technique_;
   Curve reflect_chance_;                            // of sample(), from outside
   Curve leaving_;                                   // of what comes from below: density over wi, 1/sr

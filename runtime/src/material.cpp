@@ -14,14 +14,15 @@ struct NumericKey {
   Interval allowed;
 };
 
-constexpr std::array<NumericKey, 7> kNumericKeys{{
+constexpr std::array<NumericKey, 8> kNumericKeys{{
     {"film_thickness_nm", &Material::film_thickness_nm, {0, 1e5}},
     {"exterior_ior", &Material::exterior_ior, {1, 5}},
     {"film_ior", &Material::film_ior, {1, 5}},
     {"base_ior", &Material::base_ior, {1, 5}},
     {"absorption_per_nm", &Material::absorption_per_nm, {0, 1000}},
     {"pigment_thickness_nm", &Material::pigment_thickness_nm, {0, 1e6}},
-    {"roughness", &Material::roughness, {0, 1}},
+    {"scattering_per_nm", &Material::scattering_per_nm, {0, 1000}},
+    {"anisotropy", &Material::anisotropy, {-0.99, 0.99}},
 }};
 
 const NumericKey* find_numeric(std::string_view key) {
@@ -52,11 +53,9 @@ std::vector<double> parse_list(std::string_view key, const std::string& text, st
 
 void set_roughness(Material& material, const std::string& text) {
   const auto values = parse_list("roughness", text, 2);
-  if (values.back() != values.front())
-    refuse("roughness", text, "one value or two equal ones (an anisotropic film is not supported yet)");
-  if (values.front() > 0 && values.front() < kMinRoughness)
-    refuse("roughness", text, "0 (smooth) or " + to_text(kMinRoughness) + " to 1");
-  material.roughness = values.front();
+  const Roughness roughness(values.front(), values.back());
+  if (!roughness.is_allowed()) refuse("roughness", text, allowed_roughness());
+  material.roughness = roughness;
 }
 
 void set_albedo(Material& material, const std::string& text) {
@@ -65,6 +64,17 @@ void set_albedo(Material& material, const std::string& text) {
 }
 
 }  // namespace
+
+std::optional<Material::Defect> Material::defect() const {
+  if (!scatters()) return {};
+  if (absorption_path == AbsorptionPath::product)
+    return Defect{"absorption_path", "found product with scattering_per_nm > 0; allowed: sum"};
+  if (scattering_depth() > kMostScatteringDepth)
+    return Defect{"scattering_per_nm",
+                  "found an optical thickness scattering_per_nm * pigment_thickness_nm of " +
+                      to_text(scattering_depth()) + "; allowed: up to " + to_text(kMostScatteringDepth)};
+  return {};
+}
 
 double Material::radiance_scale() const {
   return transmission == Transmission::refract ? square(exterior_ior / base_ior) : 1;
@@ -82,9 +92,19 @@ double Material::absorption_exponent(double cos_i, double cos_o) const {
 }
 
 const std::vector<std::string>& material_keys() {
-  static const std::vector<std::string> keys = {
-      "transmission", "absorption_path",   "film_thickness_nm",    "exterior_ior", "film_ior",
-      "base_ior",     "absorption_per_nm", "pigment_thickness_nm", "albedo",       "roughness"};
+  static const std::vector<std::string> keys = {"transmission",
+                                                "absorption_path",
+                                                "film_thickness_nm",
+                                                "exterior_ior",
+                                                "film_ior",
+                                                "base_ior",
+                                                "absorption_per_nm",
+                                                "pigment_thickness_nm",
+                                                "scattering_per_nm",
+                                                "anisotropy",
+                                                "albedo",
+                                                "roughness",
+                                                "microfacet"};
   return keys;
 }
 
@@ -96,8 +116,21 @@ std::string_view to_string(AbsorptionPath path) {
   return path == AbsorptionPath::product ? "product" : "sum";
 }
 
+std::string_view to_string(Microfacet microfacet) {
+  return microfacet == Microfacet::single ? "single" : "multiple";
+}
+
+std::string allowed_roughness() {
+  return "0 (smooth) or " + to_text(kMinRoughness) + " to 1, or two such values for an anisotropic film";
+}
+
+std::string to_string(const Roughness& roughness) {
+  if (roughness.is_isotropic()) return to_text(roughness.u);
+  return to_text(roughness.u) + ";" + to_text(roughness.v);
+}
+
 Interval allowed_interval(std::string_view key) {
-  if (key == "albedo") return {0, 1};
+  if (key == "albedo" || key == "roughness") return {0, 1};
   return find_numeric(key)->allowed;
 }
 
@@ -106,6 +139,8 @@ std::string get_text(const Material& material, std::string_view key) {
   if (key == "absorption_path") return std::string(to_string(material.absorption_path));
   if (key == "albedo")
     return to_text(material.albedo.r) + ";" + to_text(material.albedo.g) + ";" + to_text(material.albedo.b);
+  if (key == "roughness") return to_string(material.roughness);
+  if (key == "microfacet") return std::string(to_string(material.microfacet));
   return to_text(material.*(find_numeric(key)->member));
 }
 
@@ -116,6 +151,9 @@ void set_from_text(Material& material, std::string_view key, const std::string& 
   } else if (key == "absorption_path") {
     if (text != "product" && text != "sum") refuse(key, text, "product, sum");
     material.absorption_path = text == "product" ? AbsorptionPath::product : AbsorptionPath::sum;
+  } else if (key == "microfacet") {
+    if (text != "single" && text != "multiple") refuse(key, text, "single, multiple");
+    material.microfacet = text == "single" ? Microfacet::single : Microfacet::multiple;
   } else if (key == "albedo") {
     set_albedo(material, text);
   } else if (key == "roughness") {

@@ -115,6 +115,7 @@ Table build(const TableParts& parts) {
   Table table;
   for (const auto& key : material_keys())
     set_from_text(table.material, key, require(parts.attributes, "material." + key));
+  if (const auto defect = table.material.defect()) throw Error(defect->message());
   const std::string& symmetry = require(parts.attributes, "symmetry");
   if (symmetry != "isotropic" && symmetry != "anisotropic")
     throw Error("symmetry is '" + symmetry + "'; allowed: isotropic, anisotropic");

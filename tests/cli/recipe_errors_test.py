@@ -73,9 +73,17 @@ class RecipeErrors(support.CliTest):
         self.check("material", "absorption_path", '"longest"', 'found "longest"', '"product", "sum"')
         self.check("material", "albedo", "[0.1, 0.2]", "found 2 numbers", "list of 3")
         self.check("material", "albedo", "[0.1, 0.2, 1.3]", "element 3 is 1.3", "0 to 1")
-        self.check("material", "roughness", "[0.1, 0.2]", "[0.1, 0.2]", "two equal values")
+        self.check("material", "roughness", "[0, 0.2]", "found 0, 0.2", "two such values")
+        self.check("material", "roughness", "[0.1, 0.2, 0.3]", "found 3 numbers", "a list of 2")
+        self.check("material", "microfacet", '"double"', 'found "double"', '"single", "multiple"')
+        self.check("material", "anisotropy", "1", "found 1", "-0.99 to 0.99")
         self.check("material", "roughness", "[]", "found 0 numbers")
         self.check("material", "roughness", "0.0001", "found 0.0001", "0.001 to 1")
+
+    def test_scattering_needs_the_path_sum(self):
+        self.check("material", "absorption_path", '"product"\nscattering_per_nm = 0.5', "found product",
+                   "allowed: sum")
+        self.check("material", "scattering_per_nm", "900", "optical thickness", "up to 100")
 
     def test_full_spectrum_keys_need_mode_full(self):
         for key, value in (("illuminant", '"D65"'), ("color_space", '"acescg"')):

@@ -83,7 +83,9 @@ TEST(Material, RoughnessIsZeroOrAtLeastTheLeast) {
   EXPECT_EQ(refusal("roughness", "0.001"), "accepted");
   EXPECT_THAT(refusal("roughness", "0.0005"), HasSubstr("0 (smooth) or 0.001 to 1"));
   EXPECT_EQ(refusal("roughness", "0.2;0.2"), "accepted");
-  EXPECT_THAT(refusal("roughness", "0.2;0.3"), HasSubstr("equal"));
+  EXPECT_EQ(refusal("roughness", "0.2;0.3"), "accepted");
+  EXPECT_THAT(refusal("roughness", "0;0.3"), HasSubstr("two such values"));
+  EXPECT_THAT(refusal("roughness", "0.1;0.2;0.3"), HasSubstr("2 separated by ';'"));
 }
 
 TEST(Material, RefusedTextLeavesTheMaterialAlone) {

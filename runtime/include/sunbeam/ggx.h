@@ -1,34 +1,32 @@
-// The isotropic GGX microfacet distribution with Smith masking, shared by the live model and the tables.
+// The GGX microfacet distribution with Smith masking, shared by the live model and the tables.
 //
-// Frame: local, macro normal = z. `w` and `h` are unit vectors; w.z > 0. `alpha` is the GGX roughness itself
-// (not its square), > 0. Sources: Walter et al. 2007; Heitz 2014 (Smith, height-correlated); Dupuy and
-// Benyoub 2023 (sampling visible normals by spherical caps).
+// Frame: local, macro normal = z; roughness.u along x, roughness.v along y. `w` and `h` are unit vectors;
+// w.z > 0. Roughness is the GGX alpha itself (not its square), > 0. Sources: Walter et al. 2007; Heitz 2014
+// (Smith, height-correlated); Dupuy and Benyoub 2023 (sampling visible normals by spherical caps).
 #pragma once
 
 #include "sunbeam/core/vec.h"
 #include "sunbeam/core/warp.h"
+#include "sunbeam/roughness.h"
 
 namespace sunbeam {
 
 class Ggx {
  public:
-  explicit Ggx(double alpha) : alpha_(alpha), alpha2_(alpha * alpha) {}
+  explicit Ggx(const Roughness& roughness)
+      : u_(roughness.u), v_(roughness.v), u2_(u_ * u_), v2_(v_ * v_), uv3_(u2_ * u_ * v2_ * v_) {}
 
-  double alpha() const { return alpha_; }
-
-  // Density of microfacet normals, 1/sr: Int D(h) cos(h) dh = 1. Written with sin^2 so that a narrow lobe
-  // keeps its precision near the pole.
+  // Density of microfacet normals, 1/sr: Int D(h) cos(h) dh = 1. Written without cos^2 - 1 so that a narrow
+  // lobe keeps its precision near the pole.
   double d(const Vec3& h) const {
     if (h.z <= 0) return 0;
-    const double sin2 = h.x * h.x + h.y * h.y;
-    return alpha2_ / (kPi * square(alpha2_ * h.z * h.z + sin2));
+    return uv3_ / (kPi * square(u2_ * v2_ * h.z * h.z + v2_ * h.x * h.x + u2_ * h.y * h.y));
   }
 
   // Smith's Lambda of a direction on either side (only |w.z| matters).
   double lambda(const Vec3& w) const {
-    const double cos2 = w.z * w.z;
-    const double sin2 = w.x * w.x + w.y * w.y;
-    return (std::sqrt(1 + alpha2_ * sin2 / cos2) - 1) / 2;
+    const double slope2 = (u2_ * w.x * w.x + v2_ * w.y * w.y) / (w.z * w.z);
+    return (std::sqrt(1 + slope2) - 1) / 2;
   }
 
   double g1(const Vec3& w) const { return 1 / (1 + lambda(w)); }
@@ -49,12 +47,12 @@ class Ggx {
 
   // A normal with density D_vis(h; w).
   Vec3 sample_visible(const Vec3& w, const Point2& u) const {
-    const Vec3 stretched = normalize({alpha_ * w.x, alpha_ * w.y, w.z});
+    const Vec3 stretched = normalize({u_ * w.x, v_ * w.y, w.z});
     const double phi = 2 * kPi * u.x;
     const double z = (1 - u.y) * (1 + stretched.z) - stretched.z;
     const double sin_theta = std::sqrt(std::max(0.0, 1 - z * z));
     const Vec3 cap = Vec3{sin_theta * std::cos(phi), sin_theta * std::sin(phi), z} + stretched;
-    return normalize({alpha_ * cap.x, alpha_ * cap.y, std::max(1e-12, cap.z)});
+    return normalize({u_ * cap.x, v_ * cap.y, std::max(1e-12, cap.z)});
   }
 
   // The lobe of a reflecting surface without its reflectance: D(h) G2 / (4 cos_o cos_i), 1/sr.
@@ -66,7 +64,7 @@ class Ggx {
   double reflection_pdf(const Vec3& wo, const Vec3& h) const { return g1(wo) * d(h) / (4 * wo.z); }
 
  private:
-  double alpha_, alpha2_;
+  double u_, v_, u2_, v2_, uv3_;
 };
 
 }  // namespace sunbeam

@@ -1,14 +1,16 @@
 // The parameters of the layered skin: exterior | thin film | pigment layer | diffuse base.
 //
-// Keys of recipes and tables are the member names. Lengths are in nm, absorption in 1/nm, the rest has no
-// unit.
+// Keys of recipes and tables are the member names. Lengths are in nm, absorption and scattering in 1/nm, the
+// rest has no unit.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "sunbeam/core/vec.h"
+#include "sunbeam/roughness.h"
 
 namespace sunbeam {
 
@@ -20,6 +22,10 @@ enum class Transmission { straight, refract };
 // "product" exp(-tau / (cos_i cos_o)), "sum" exp(-tau (1/cos_i + 1/cos_o)); cosines below the film.
 enum class AbsorptionPath { product, sum };
 
+// What becomes of light that a rough film's facets throw onto other facets: "single" loses it, "multiple"
+// follows it until it leaves the microsurface (Heitz et al. 2016).
+enum class Microfacet { single, multiple };
+
 struct Material {
   Transmission transmission = Transmission::refract;
   AbsorptionPath absorption_path = AbsorptionPath::sum;
@@ -29,11 +35,28 @@ struct Material {
   double base_ior = 1.5;            // n2, 1 to 5
   double absorption_per_nm = 0.1;   // sigma_a of the pigment, 0 to 1000
   double pigment_thickness_nm = 2;  // d1, 0 to 1e6
+  double scattering_per_nm = 0;     // sigma_s of the pigment, 0 to 1000, the same at all wavelengths
+  double anisotropy = 0;            // mean cosine g of its Henyey-Greenstein phase function, -0.99 to 0.99
   Rgb albedo = Rgb(0.3);            // kd of the diffuse base, each 0 to 1
-  double roughness = 0.1;           // GGX alpha of the film, 0 (smooth) to 1
+  Roughness roughness = 0.1;        // GGX alpha of the film, 0 (smooth) to 1
+  Microfacet microfacet = Microfacet::single;
 
-  bool is_smooth() const { return roughness == 0; }
+  bool is_smooth() const { return roughness.u == 0; }
   double optical_depth() const { return absorption_per_nm * pigment_thickness_nm; }
+  double scattering_depth() const { return scattering_per_nm * pigment_thickness_nm; }
+  bool scatters() const { return scattering_depth() > 0; }
+  bool has_multiple_facets() const { return microfacet == Microfacet::multiple && !is_smooth(); }
+
+  // The family that polar angles alone describe below the film, and that quadrature solves: no scattering in
+  // the pigment, isotropic facets met once.
+  bool is_plain() const { return !scatters() && roughness.is_isotropic() && !has_multiple_facets(); }
+
+  // Values that do not go together; none if all is well.
+  struct Defect {
+    std::string key, text;  // "found V ...; allowed: ..."
+    std::string message() const { return "key '" + key + "': " + text; }
+  };
+  std::optional<Defect> defect() const;
 
   // Radiance pays the squared index ratio once over a whole visit below the film: (n0/n2)^2 or 1.
   double radiance_scale() const;
@@ -45,8 +68,8 @@ struct Material {
   double absorption_exponent(double cos_i, double cos_o) const;
 };
 
-// Below this roughness the film would be numerically a mirror: allowed are 0 and [kMinRoughness, 1].
-inline constexpr double kMinRoughness = 1e-3;
+// Walks through an optically thicker pigment would not end in useful time.
+inline constexpr double kMostScatteringDepth = 100;
 
 // Text access by key, for CSV columns, table metadata and messages. Lists are separated by ';'.
 const std::vector<std::string>& material_keys();
@@ -56,6 +79,9 @@ void set_from_text(Material& material, std::string_view key, const std::string& 
 
 std::string_view to_string(Transmission transmission);
 std::string_view to_string(AbsorptionPath path);
+std::string_view to_string(Microfacet microfacet);
+std::string to_string(const Roughness& roughness);  // one number, or two with ';'
+std::string allowed_roughness();                    // what Roughness::is_allowed() allows
 
 // Allowed interval of a numeric key, as used by every reader.
 struct Interval {

@@ -116,7 +116,7 @@ class Sweep {
     for (std::size_t i = 0; i < wi_.size(); ++i) {
       rows.push_back(bake_row(model, technique_of(recipe_.accuracy.estimator), wi_[i], wo_,
                               recipe_.accuracy.noise, Rng(settings_.seed, node * wi_.size() + i)));
-      walks_ += rows.back().estimates * walk::kLanes;
+      walks_ += rows.back().estimates * model.walks_per_estimate();
     }
     average_reciprocal(rows, table_.remainder.axes()[6].size());
     store(node, parameters, material, rows);

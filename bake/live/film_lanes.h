@@ -72,11 +72,14 @@ class FilmLanes {
   // Calls visit(j, reflectance) for each wavelength.
   template <class F>
   SUNBEAM_INLINE void reflectances(F visit) const {
-    each_phase(visit, [&](const V& c, const V& s, const V&) {
-      const V ds = s_.sum * c + s_.plus * s, dp = p_.sum * c + p_.plus * s;
-      const V ns = s_.difference * c + s_.minus * s, np = p_.difference * c + p_.minus * s;
-      return V(1) + through_ * (V(0.5) * (ns * dp + np * ds) / (ds * dp) - V(1));
-    });
+    each_phase(visit, [&](const V& c, const V& s, const V&) { return reflectance(c, s); });
+  }
+  // Each lane at a wavenumber k of its own; k = 0 if the film is bare.
+  SUNBEAM_INLINE V reflectance_at(const V& k) const {
+    const auto power = [&](const V& c, const V& s, const V&) { return reflectance(c, s); };
+    if (phases_.is_bare) return power(V(1), V(0), V(1));
+    if (may_be_evanescent_) return evanescent(V(2) * k * c1_, power);
+    return wave(cos_of_phase(V(2) * k * c1_), power);
   }
   template <class F>
   SUNBEAM_INLINE void transmittances(F visit) const {
@@ -87,6 +90,12 @@ class FilmLanes {
   }
 
  private:
+  SUNBEAM_INLINE V reflectance(const V& c, const V& s) const {
+    const V ds = s_.sum * c + s_.plus * s, dp = p_.sum * c + p_.plus * s;
+    const V ns = s_.difference * c + s_.minus * s, np = p_.difference * c + p_.minus * s;
+    return V(1) + through_ * (V(0.5) * (ns * dp + np * ds) / (ds * dp) - V(1));
+  }
+
   struct Polarisation {
     V sum, difference;  // (q0 +- q2)^2
     V plus, minus;      // (b +- d)^2
@@ -112,7 +121,7 @@ class FilmLanes {
       const V same = power(V(1), V(0), V(1));
       for (int j = 0; j < count; ++j) visit(j, same);
     } else if (may_be_evanescent_) {
-      for (int j = 0; j < count; ++j) visit(j, evanescent(j, power));
+      for (int j = 0; j < count; ++j) visit(j, evanescent(V(2 * phases_.k[j]) * c1_, power));
     } else if (!phases_.is_even) {
       for (int j = 0; j < count; ++j) visit(j, wave(cos_of_phase(V(2 * phases_.k[j]) * c1_), power));
     } else {
@@ -130,13 +139,12 @@ class FilmLanes {
   }
 
   template <class Power>
-  SUNBEAM_INLINE V wave(const V& cosine, Power& power) const {
+  SUNBEAM_INLINE V wave(const V& cosine, const Power& power) const {
     return power(V(0.5) + V(0.5) * cosine, (V(0.5) - V(0.5) * cosine) * per_c1_squared_, V(1));
   }
   template <class Power>
-  SUNBEAM_INLINE V evanescent(int j, Power& power) const {
+  SUNBEAM_INLINE V evanescent(const V& phase, const Power& power) const {
     const auto is_wave = c1_squared_ > V(0);
-    const V phase = V(2 * phases_.k[j]) * c1_;
     const V cosine = cos_of_phase(select(is_wave, phase, V(0)));
     const V e = exp_negative(-phase), tanh = (V(1) - e) / (V(1) + e);
     return power(select(is_wave, V(0.5) + V(0.5) * cosine, V(1)),

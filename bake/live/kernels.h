@@ -5,13 +5,15 @@
 
 namespace sunbeam::walk {
 
-// Both add estimates of rest, 1/sr per wavelength, to sums (see walk.h, bidirectional.h); wi and wo are
-// cosines. Neither allocates memory. All instruction sets give the same bits.
+// The first two add estimates of rest, 1/sr per wavelength, to sums (see walk.h, bidirectional.h); wi and wo
+// are cosines. None allocates memory. All instruction sets give the same bits.
 struct Kernels {
   const char* name;
   void (*unidirectional)(const Layers& layers, double wi, const double* wo, int exits, Rng& rng,
                          double* sums);
   void (*bidirectional)(const Layers& layers, double wi, double wo, Rng& rng, double* sums);
+  // The film at one cosine and all wavelengths; writes up to kMostWavelengths.
+  void (*reflectances)(const FilmSide& film, const FilmPhases& phases, double cosine, double* r);
 };
 
 // What every machine of this kind of processor has (x86-64: SSE2; ARM: NEON).

@@ -2,6 +2,7 @@
 
 namespace sunbeam::walk {
 
-const Kernels kAvx2Kernels{"avx2", unidirectional<xsimd::avx2>, bidirectional<xsimd::avx2>};
+const Kernels kAvx2Kernels{"avx2", unidirectional<xsimd::avx2>, bidirectional<xsimd::avx2>,
+                           reflectances<xsimd::avx2>};
 
 }  // namespace sunbeam::walk

@@ -8,6 +8,7 @@ using Baseline = xsimd::sse2;
 using Baseline = xsimd::default_arch;
 #endif
 
-const Kernels kBaselineKernels{"baseline", unidirectional<Baseline>, bidirectional<Baseline>};
+const Kernels kBaselineKernels{"baseline", unidirectional<Baseline>, bidirectional<Baseline>,
+                               reflectances<Baseline>};
 
 }  // namespace sunbeam::walk

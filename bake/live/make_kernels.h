@@ -18,4 +18,12 @@ SUNBEAM_FLATTEN void bidirectional(const Layers& layers, double wi, double wo, R
   BidirectionalWalk<Packet<Arch>>(layers).add(wi, wo, rng, sums);
 }
 
+template <class Arch>
+SUNBEAM_FLATTEN void reflectances(const FilmSide& film, const FilmPhases& phases, double cosine, double* r) {
+  using Batch = xsimd::batch<double, Arch>;
+  const FilmLanes<Batch> lanes(film, phases, Batch(cosine));
+  for (int j = 0; j < phases.count; j += static_cast<int>(Batch::size))
+    lanes.reflectance_at(Batch::load_unaligned(&phases.k[j])).store_unaligned(r + j);
+}
+
 }  // namespace sunbeam::walk

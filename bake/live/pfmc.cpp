@@ -26,7 +26,13 @@ Vec3 facet_normal(const Vec3& w, const Lane::Normal& facet, Rng& rng) {
 }  // namespace
 
 Pfmc::Pfmc(const Material& material, const Wavelengths& wavelengths, const walk::Kernels& kernels)
-    : layers_(material, wavelengths), weight_{}, importance_{}, ggx_(material.roughness), kernels_(&kernels) {
+    : layers_(material, wavelengths),
+      stack_(material),
+      is_plain_(material.is_plain()),
+      weight_{},
+      importance_{},
+      ggx_(material.roughness),
+      kernels_(&kernels) {
   double sum = 0;
   for (int k = 0; k < layers_.count; ++k) {
     weight_[k] = wavelengths.weight[k];
@@ -87,6 +93,7 @@ double Pfmc::mean_reflectance(double cos_exterior) const {
 }
 
 double Pfmc::reflect_chance(double cos_exterior) const {
+  if (!is_plain_) return mean_reflectance(cos_exterior);
   return entry_chance(mean_reflectance(cos_exterior));
 }
 
@@ -99,7 +106,8 @@ double Pfmc::leaving_shape(double cos_exterior) const {
 double Pfmc::first_pdf(const Vec3& wo, const Vec3& wi) const {
   if (layers_.is_smooth() || wo.z <= 0 || wi.z <= 0) return 0;
   const Vec3 h = normalize(wo + wi);
-  return ggx_.reflection_pdf(wo, h) * reflect_chance(dot(wo, h));
+  const double escapes = stack_.multiple ? ggx_.g2_over_g1(wo, wi) : 1;
+  return ggx_.reflection_pdf(wo, h) * reflect_chance(dot(wo, h)) * escapes;
 }
 
 Rgb Pfmc::estimate_rest(const Vec3& wo, const Vec3& wi, Rng& rng, Technique technique) const {
@@ -111,6 +119,7 @@ Rgb Pfmc::estimate_rest(const Vec3& wo, const Vec3& wi, Rng& rng, Technique tech
 void Pfmc::add_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, std::span<Rgb> sums,
                     Technique technique) const {
   if (wi.z <= 0) return;
+  if (!is_plain_) return add_stack_rest(wi, wo, rng, sums, technique);
   const std::size_t chunk = technique == Technique::unidirectional ? kChunk : 1;
   for (std::size_t first = 0; first < wo.size(); first += chunk) {
     const std::size_t exits = std::min(chunk, wo.size() - first);
@@ -126,8 +135,47 @@ void Pfmc::add_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, std::spa
   }
 }
 
+walk::Stack Pfmc::stack(walk::Carrying carrying) const {
+  return {layers_, stack_, importance_.data(), *kernels_, carrying};
+}
+
+void Pfmc::add_stack_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, std::span<Rgb> sums,
+                          Technique technique) const {
+  const walk::Stack stack = this->stack(walk::Carrying::power);
+  const std::size_t most = technique == Technique::unidirectional ? walk::Stack::kMostExits : 1;
+  for (std::size_t first = 0; first < wo.size(); first += most) {
+    const std::size_t exits = std::min(most, wo.size() - first);
+    Vec3 open[walk::Stack::kMostExits];
+    double values[walk::Stack::kMostExits * kMostWavelengths];
+    for (std::size_t k = 0; k < exits; ++k) open[k] = wo[first + k].z > 0 ? wo[first + k] : Vec3{0, 0, 1};
+    std::fill_n(values, exits * layers_.count, 0.0);
+    if (technique == Technique::unidirectional)
+      stack.add_unidirectional(wi, open, static_cast<int>(exits), rng, values);
+    else
+      stack.add_bidirectional(wi, open[0], rng, values);
+    for (std::size_t k = 0; k < exits; ++k)
+      if (wo[first + k].z > 0) sums[first + k] += fold(values + k * layers_.count);
+  }
+}
+
+std::optional<BsdfSample> Pfmc::sample_stack(const Vec3& wo, Rng& rng, const Pfmc& below) const {
+  Powers power;
+  const walk::StackSample s = below.stack(walk::Carrying::power).sample(wo, power, rng);
+  if (s.is_lost) return {};
+  if (s.is_first) return BsdfSample{s.wi, film_reflectance(s.facet_cosine) * s.weight, layers_.is_smooth()};
+  return BsdfSample{s.wi, below.fold(power.data()), false};
+}
+
+// Reciprocity of the chances turns leaving along wi into entering there, as for powers.
+double Pfmc::estimate_stack_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const {
+  double density = 0;
+  stack(walk::Carrying::chance).add_unidirectional(wo, &wi, 1, rng, &density);
+  return density * wi.z;
+}
+
 std::optional<BsdfSample> Pfmc::sample(const Vec3& wo, Rng& rng, const Pfmc& below) const {
   if (wo.z <= 0) return {};
+  if (!is_plain_) return sample_stack(wo, rng, below);
   const Lane events(layers_);
   const auto facet = events.meet(wo.z, rng);
   const Powers power = reflectances(layers_.film, facet.cosine);
@@ -188,6 +236,7 @@ double Pfmc::leave_pdf(const Vec3& wi, Rng& rng, double& cosine) const {
 
 double Pfmc::estimate_pdf(const Vec3& wo, const Vec3& wi, Rng& rng, const Pfmc& below) const {
   if (wo.z <= 0 || wi.z <= 0) return 0;
+  if (!is_plain_) return below.first_pdf(wo, wi) + below.estimate_stack_pdf(wo, wi, rng);
   const Lane events(layers_);
   const auto facet = events.meet(wo.z, rng);
   const auto passage = events.cross(wo.z, facet, layers_.index_ratio);

@@ -10,8 +10,10 @@
 // refracting. Reciprocity of the passage turns leaving into entering, which leaves one factor (n0/n2)^2 on
 // the whole rest.
 //
-// One estimate is the mean of kLanes stratified walks, worked on side by side at all wavelengths, and folded
-// into linear RGB. Directions are chosen alike for all wavelengths. No hidden state, no allocation in a call.
+// For plain materials (Material::is_plain) one estimate is the mean of kLanes stratified walks, worked on
+// side by side at all wavelengths (kernels.h); for all others the mean of Stack::kWalks walks in three
+// dimensions (stack.h). Directions are chosen alike for all wavelengths. No hidden state, no allocation in a
+// call.
 #pragma once
 
 #include <array>
@@ -20,6 +22,7 @@
 
 #include "bake/live/events.h"
 #include "bake/live/kernels.h"
+#include "bake/live/stack.h"
 #include "bake/live/wavelengths.h"
 #include "sunbeam/bsdf.h"
 #include "sunbeam/ggx.h"
@@ -36,6 +39,8 @@ class Pfmc {
   explicit Pfmc(const Material& material) : Pfmc(material, Wavelengths::rgb3(material)) {}
 
   int wavelengths() const { return layers_.count; }
+
+  int walks_per_estimate() const { return is_plain_ ? walk::kLanes : walk::Stack::kWalks; }
 
   // Film reflectance from outside. Exact.
   Rgb film_reflectance(double cos_exterior) const;
@@ -95,7 +100,15 @@ class Pfmc {
   double leave_pdf(const Vec3& wi, Rng& rng, double& cosine) const;
   double pdf_below(const Vec3& wi, Rng& rng) const;
 
+  void add_stack_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, std::span<Rgb> sums,
+                      Technique technique) const;
+  std::optional<BsdfSample> sample_stack(const Vec3& wo, Rng& rng, const Pfmc& below) const;
+  double estimate_stack_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const;
+  walk::Stack stack(walk::Carrying carrying) const;
+
   walk::Layers layers_;
+  walk::StackLayers stack_;
+  bool is_plain_;
   std::array<Rgb, kMostWavelengths> weight_;
   std::array<double, kMostWavelengths> importance_;
   Ggx ggx_;

@@ -36,7 +36,7 @@ struct Surface {
   const Mesh* mesh = nullptr;
   int object = -1, light = -1;
   double offset = 0;
-  std::vector<Vec3> tangents = {};  // vertex_tangents of the mesh
+  std::vector<Vec3> tangents = {};  // of the triangles of a flat mesh, of the vertices of a smooth one
 };
 
 double largest_coordinate(const Vec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
@@ -49,6 +49,10 @@ double offset_of(const Mesh& mesh) {
   double extent = 0;
   for (const Vec3& position : mesh.positions) extent = std::max(extent, largest_coordinate(position));
   return kRelativeOffset * extent;
+}
+
+std::vector<Vec3> tangents_of(const Mesh& mesh) {
+  return mesh.normals.empty() ? triangle_tangents(mesh) : vertex_tangents(mesh);
 }
 
 // --- spheres: Embree calls back, and the roots are found in double precision ---
@@ -159,8 +163,9 @@ Point triangle_point(const Surface& surface, const RTCHit& hit) {
   Vec3 shading = mesh.normals.empty() ? geometric : blend(mesh.normals);
   if (dot(shading, geometric) < 0) shading = -shading;
   const double size = length(shading);
-  const Vec3 tangent =
-      surface.tangents.empty() ? triangle_tangent(mesh, hit.primID) : unit_or_zero(blend(surface.tangents));
+  Vec3 tangent;
+  if (!surface.tangents.empty())
+    tangent = mesh.normals.empty() ? surface.tangents[hit.primID] : unit_or_zero(blend(surface.tangents));
   return {blend(mesh.positions), geometric, size > 0 ? shading / size : geometric, tangent};
 }
 
@@ -208,7 +213,7 @@ void EmbreeScene::Impl::collect(const Scene& source) {
   }
   for (Surface& surface : surfaces) {
     surface.offset = surface.sphere ? offset_of(*surface.sphere) : offset_of(*surface.mesh);
-    if (surface.mesh) surface.tangents = vertex_tangents(*surface.mesh);
+    if (surface.mesh) surface.tangents = tangents_of(*surface.mesh);
   }
 }
 

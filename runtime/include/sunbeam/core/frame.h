@@ -21,9 +21,9 @@ struct Frame {
   // have any length; if it is zero, not finite or parallel to `n`, this is from_normal(n).
   static Frame from_normal_and_tangent(const Vec3& n, const Vec3& t) {
     const Vec3 projected = t - dot(t, n) * n;
-    const double size = length(projected);
-    if (!(size > 1e-6 * length(t))) return from_normal(n);
-    const Vec3 tangent = projected / size;
+    const double size2 = dot(projected, projected);
+    if (!(size2 > 1e-12 * dot(t, t))) return from_normal(n);
+    const Vec3 tangent = projected / std::sqrt(size2);
     return {tangent, cross(n, tangent), n};
   }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "runtime/tracer/tangents.h"
 #include "sunbeam/core/error.h"
 
 namespace sunbeam {
@@ -35,6 +36,7 @@ struct Surface {
   const Mesh* mesh = nullptr;
   int object = -1, light = -1;
   double offset = 0;
+  std::vector<Vec3> tangents = {};  // of the triangles of a flat mesh, of the vertices of a smooth one
 };
 
 double largest_coordinate(const Vec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
@@ -47,6 +49,10 @@ double offset_of(const Mesh& mesh) {
   double extent = 0;
   for (const Vec3& position : mesh.positions) extent = std::max(extent, largest_coordinate(position));
   return kRelativeOffset * extent;
+}
+
+std::vector<Vec3> tangents_of(const Mesh& mesh) {
+  return mesh.normals.empty() ? triangle_tangents(mesh) : vertex_tangents(mesh);
 }
 
 // --- spheres: Embree calls back, and the roots are found in double precision ---
@@ -136,16 +142,17 @@ Geometry make_mesh(RTCDevice device, const Mesh& mesh) {
 // --- hits ---
 
 struct Point {
-  Vec3 position, geometric_normal, shading_normal;
+  Vec3 position, geometric_normal, shading_normal, tangent;
 };
 
 // Embree's distance is in single precision: the point is put back onto the sphere.
 Point sphere_point(const Sphere& sphere, const Vec3& near_surface) {
   const Vec3 normal = normalize(near_surface - sphere.center);
-  return {sphere.center + sphere.radius * normal, normal, normal};
+  return {sphere.center + sphere.radius * normal, normal, normal, unit_or_zero({-normal.y, normal.x, 0})};
 }
 
-Point triangle_point(const Mesh& mesh, const RTCHit& hit) {
+Point triangle_point(const Surface& surface, const RTCHit& hit) {
+  const Mesh& mesh = *surface.mesh;
   const auto [i, j, k] = mesh.triangles[hit.primID];
   const double u = hit.u, v = hit.v;
   const auto blend = [&](const std::vector<Vec3>& values) {
@@ -156,7 +163,10 @@ Point triangle_point(const Mesh& mesh, const RTCHit& hit) {
   Vec3 shading = mesh.normals.empty() ? geometric : blend(mesh.normals);
   if (dot(shading, geometric) < 0) shading = -shading;
   const double size = length(shading);
-  return {blend(mesh.positions), geometric, size > 0 ? shading / size : geometric};
+  Vec3 tangent;
+  if (!surface.tangents.empty())
+    tangent = mesh.normals.empty() ? surface.tangents[hit.primID] : unit_or_zero(blend(surface.tangents));
+  return {blend(mesh.positions), geometric, size > 0 ? shading / size : geometric, tangent};
 }
 
 RTCRay to_embree(const Ray& ray, float distance) {
@@ -201,8 +211,10 @@ void EmbreeScene::Impl::collect(const Scene& source) {
                         .mesh = std::get_if<Mesh>(&shape),
                         .object = static_cast<int>(i)});
   }
-  for (Surface& surface : surfaces)
+  for (Surface& surface : surfaces) {
     surface.offset = surface.sphere ? offset_of(*surface.sphere) : offset_of(*surface.mesh);
+    if (surface.mesh) surface.tangents = tangents_of(*surface.mesh);
+  }
 }
 
 void EmbreeScene::Impl::build() {
@@ -248,10 +260,17 @@ std::optional<SurfaceHit> EmbreeScene::intersect(const Ray& ray) const {
   const Point point =
       surface.sphere
           ? sphere_point(*surface.sphere, ray.origin + static_cast<double>(query.ray.tfar) * ray.direction)
-          : triangle_point(*surface.mesh, query.hit);
+          : triangle_point(surface, query.hit);
   return SurfaceHit{
-      point.position, point.geometric_normal, point.shading_normal, length(point.position - ray.origin),
-      surface.offset, surface.object,         surface.light};
+      .position = point.position,
+      .geometric_normal = point.geometric_normal,
+      .shading_normal = point.shading_normal,
+      .tangent = point.tangent,
+      .distance = length(point.position - ray.origin),
+      .offset = surface.offset,
+      .object = surface.object,
+      .light = surface.light,
+  };
 }
 
 bool EmbreeScene::occluded(const Ray& ray, double distance) const {

@@ -13,10 +13,14 @@ struct SurfaceHit {
   Vec3 position;          // on the surface to double precision (spheres) or to that of its vertices (meshes)
   Vec3 geometric_normal;  // unit; out of a sphere, by the winding of a triangle
   Vec3 shading_normal;    // unit, interpolated, on the side of the geometric normal
-  double distance;        // from the origin of the ray
-  double offset;          // a ray that starts this far above `position` does not hit the same surface again
-  int object;             // index into Scene::objects, -1 for a light
-  int light;              // index into Scene::quad_lights, -1 for an object
+  // Unit, along dp/du (increasing u), continuous over smooth meshes; only nearly perpendicular to the shading
+  // normal. u of a sphere is the longitude about its z axis. Zero where no direction is known: without
+  // texture coordinates, where they are degenerate, at the poles of a sphere.
+  Vec3 tangent;
+  double distance;  // from the origin of the ray
+  double offset;    // a ray that starts this far above `position` does not hit the same surface again
+  int object;       // index into Scene::objects, -1 for a light
+  int light;        // index into Scene::quad_lights, -1 for an object
 };
 
 class EmbreeScene {

@@ -13,13 +13,11 @@ Vec3 rotate_xyz(const Vec3& v, const Vec3& degrees) {
   return {cz * about_y.x - sz * about_y.y, sz * about_y.x + cz * about_y.y, about_y.z};
 }
 
-// Two triangles for each cell of a grid that closes on itself both ways.
-void connect_wrapped_grid(Mesh& mesh, std::uint32_t columns, std::uint32_t rows) {
+// Two triangles for each cell of a grid of (columns + 1) x (rows + 1) vertices.
+void connect_grid(Mesh& mesh, std::uint32_t columns, std::uint32_t rows) {
   for (std::uint32_t i = 0; i < columns; ++i)
     for (std::uint32_t j = 0; j < rows; ++j) {
-      const std::uint32_t next_i = (i + 1) % columns, next_j = (j + 1) % rows;
-      const std::uint32_t a = i * rows + j, b = next_i * rows + j;
-      const std::uint32_t c = next_i * rows + next_j, d = i * rows + next_j;
+      const std::uint32_t a = i * (rows + 1) + j, b = a + rows + 1, c = b + 1, d = a + 1;
       mesh.triangles.push_back({a, b, c});
       mesh.triangles.push_back({a, c, d});
     }
@@ -30,6 +28,7 @@ void connect_wrapped_grid(Mesh& mesh, std::uint32_t columns, std::uint32_t rows)
 Mesh quad_mesh(const Vec3& corner, const Vec3& edge_u, const Vec3& edge_v) {
   Mesh mesh;
   mesh.positions = {corner, corner + edge_u, corner + edge_u + edge_v, corner + edge_v};
+  mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   return mesh;
 }
@@ -38,16 +37,19 @@ Mesh torus_mesh(const Vec3& center, double major_radius, double minor_radius, co
                 int resolution) {
   Mesh mesh;
   const int around_tube = resolution / 2;
-  for (int i = 0; i < resolution; ++i)
-    for (int j = 0; j < around_tube; ++j) {
-      const double phi = 2 * kPi * i / resolution, psi = 2 * kPi * j / around_tube;
+  for (int i = 0; i <= resolution; ++i)
+    for (int j = 0; j <= around_tube; ++j) {
+      // The remainders put both sides of a seam at exactly the same place.
+      const double phi = 2 * kPi * (i % resolution) / resolution;
+      const double psi = 2 * kPi * (j % around_tube) / around_tube;
       const Vec3 outward = {std::cos(phi), std::sin(phi), 0};
       const Vec3 normal = outward * std::cos(psi) + Vec3{0, 0, std::sin(psi)};
       const Vec3 position = outward * major_radius + normal * minor_radius;
       mesh.positions.push_back(center + rotate_xyz(position, rotate_deg));
       mesh.normals.push_back(rotate_xyz(normal, rotate_deg));
+      mesh.uvs.push_back({static_cast<double>(i) / resolution, static_cast<double>(j) / around_tube});
     }
-  connect_wrapped_grid(mesh, static_cast<std::uint32_t>(resolution), static_cast<std::uint32_t>(around_tube));
+  connect_grid(mesh, static_cast<std::uint32_t>(resolution), static_cast<std::uint32_t>(around_tube));
   return mesh;
 }
 

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
 
+#include <array>
 #include <charconv>
 #include <cstdlib>
+#include <cstring>
 #include <sstream>
 #include <string_view>
 
@@ -26,22 +28,32 @@ class ObjCheck {
       ++line_number_;
       check_line(line);
     }
-    if (largest_index_ > vertices_)
-      fail(largest_index_line_, fmt::format("face index {}; allowed: 1 to {}", largest_index_, vertices_));
+    for (const List& list : lists_)
+      if (list.largest > list.count)
+        fail(list.largest_line,
+             fmt::format("{} index {}; allowed: 1 to {}", list.name, list.largest, list.count));
   }
 
  private:
+  // What faces point into.
+  struct List {
+    const char *keyword, *name;
+    int numbers;  // in an entry
+    long count = 0;
+    long largest = 0, largest_line = 0;  // index, and where it stands
+  };
+
   void check_line(const std::string& line) {
     std::istringstream words(line);
     std::string keyword;
     words >> keyword;
-    if (keyword == "v" || keyword == "vn") check_numbers(keyword, words);
-    if (keyword == "v") ++vertices_;
+    for (List& list : lists_)
+      if (keyword == list.keyword) check_numbers(list, words), ++list.count;
     if (keyword == "f") check_face(words);
   }
 
-  void check_numbers(const std::string& keyword, std::istringstream& words) {
-    for (int i = 0; i < 3; ++i) {
+  void check_numbers(const List& list, std::istringstream& words) {
+    for (int i = 0; i < list.numbers; ++i) {
       std::string word;
       words >> word;
       const char* begin = word.c_str() + (word.starts_with('+') ? 1 : 0);
@@ -50,18 +62,29 @@ class ObjCheck {
       const auto parsed = std::from_chars(begin, end, value);
       if (parsed.ec != std::errc() || parsed.ptr != end || !std::isfinite(value))
         fail(line_number_,
-             fmt::format("'{}' entry {} is '{}'; allowed: a finite number", keyword, i + 1, word));
+             fmt::format("'{}' entry {} is '{}'; allowed: a finite number", list.keyword, i + 1, word));
     }
   }
 
   void check_face(std::istringstream& words) {
     for (std::string word; words >> word;) {
       if (word.starts_with('#')) return;
-      const long index = std::strtol(word.c_str(), nullptr, 10);
-      if (index == 0 || index < -vertices_)
-        fail(line_number_, fmt::format("face index '{}'; allowed: 1 up, or -1 down to -{}", word, vertices_));
-      if (index > largest_index_) largest_index_ = index, largest_index_line_ = line_number_;
+      const char* field = word.c_str();
+      for (List& list : lists_) {
+        if (*field != '/') check_index(list, field, word);  // v//vn leaves vt out
+        field = std::strchr(field, '/');
+        if (!field) break;
+        ++field;
+      }
     }
+  }
+
+  void check_index(List& list, const char* field, const std::string& word) {
+    const long index = std::strtol(field, nullptr, 10);
+    if (index == 0 || index < -list.count)
+      fail(line_number_,
+           fmt::format("{} index '{}'; allowed: 1 up, or -1 down to -{}", list.name, word, list.count));
+    if (index > list.largest) list.largest = index, list.largest_line = line_number_;
   }
 
   [[noreturn]] void fail(long line, const std::string& message) const {
@@ -69,8 +92,9 @@ class ObjCheck {
   }
 
   const std::string& path_;
-  long line_number_ = 0, vertices_ = 0;
-  long largest_index_ = 0, largest_index_line_ = 0;
+  long line_number_ = 0;
+  // In the order of the fields of a corner, v/vt/vn.
+  std::array<List, 3> lists_{{{"v", "face", 3}, {"vt", "texture", 2}, {"vn", "normal", 3}}};
 };
 
 struct ObjData {
@@ -93,10 +117,12 @@ Vec3 triple(const std::vector<tinyobj::real_t>& values, int index) {
   return {v[0], v[1], v[2]};
 }
 
+Point2 pair(const std::vector<tinyobj::real_t>& values, int index) {
+  const tinyobj::real_t* v = &values[2 * static_cast<std::size_t>(index)];
+  return {v[0], v[1]};
+}
+
 Vec3 normal_of(const std::string& path, const tinyobj::attrib_t& attributes, int index) {
-  if (3 * static_cast<std::size_t>(index) >= attributes.normals.size())
-    throw Error(
-        fmt::format("{}: normal index {}; allowed: 1 to {}", path, index + 1, attributes.normals.size() / 3));
   const Vec3 normal = triple(attributes.normals, index);
   if (!(length(normal) > 0)) throw Error(fmt::format("{}: normal {} has length 0", path, index + 1));
   return normalize(normal);
@@ -123,14 +149,17 @@ Mesh load_obj(const std::string& path, double scale, const Vec3& translate) {
   const ObjData data = parse(path, text);
 
   Mesh mesh;
-  bool has_normals = true;
+  bool has_normals = true, has_uvs = true;
   for (const auto& shape : data.shapes)
     for (const auto& corner : shape.mesh.indices) {
       mesh.positions.push_back(scale * triple(data.attributes.vertices, corner.vertex_index) + translate);
       has_normals = has_normals && corner.normal_index >= 0;
       if (has_normals) mesh.normals.push_back(normal_of(path, data.attributes, corner.normal_index));
+      has_uvs = has_uvs && corner.texcoord_index >= 0;
+      if (has_uvs) mesh.uvs.push_back(pair(data.attributes.texcoords, corner.texcoord_index));
     }
   if (!has_normals) mesh.normals.clear();  // smooth shading needs all of them
+  if (!has_uvs) mesh.uvs.clear();
   for (std::uint32_t i = 0; i + 2 < mesh.positions.size(); i += 3)
     mesh.triangles.push_back({i, i + 1, i + 2});
   if (mesh.triangles.empty()) throw Error(path + ": the mesh has no face");

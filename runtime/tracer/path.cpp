@@ -21,6 +21,14 @@ Vec3 bend_towards(const Vec3& normal, const Vec3& wo) {
   return cosine >= kGrazing ? normal : normalize(normal + (kGrazing - cosine) * wo);
 }
 
+// The direction of the local x axis: `tangent` turned counter-clockwise about `normal`.
+Vec3 turned_tangent(const Vec3& tangent, const Vec3& normal, double degrees) {
+  if (degrees == 0) return tangent;
+  const double angle = degrees * (kPi / 180);
+  const Frame frame = Frame::from_normal_and_tangent(normal, tangent);
+  return frame.to_world({std::cos(angle), std::sin(angle), 0});
+}
+
 bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 }  // namespace
@@ -43,11 +51,12 @@ PathTracer::PathTracer(const Scene& scene, const EmbreeScene& geometry, const Li
 PathTracer::Vertex PathTracer::make_vertex(const Ray& ray, const SurfaceHit& hit) const {
   const Vec3 wo = -ray.direction;
   const double side = dot(wo, hit.geometric_normal) < 0 ? -1 : 1;
-  const Frame frame = Frame::from_normal(bend_towards(side * hit.shading_normal, wo));
-  const int material = scene_.objects[static_cast<std::size_t>(hit.object)].material;
-  return {hit.position, side * hit.geometric_normal,
-          frame,        frame.to_local(wo),
-          hit.offset,   bsdfs_[static_cast<std::size_t>(material)]};
+  const auto material =
+      static_cast<std::size_t>(scene_.objects[static_cast<std::size_t>(hit.object)].material);
+  const Vec3 tangent =
+      turned_tangent(hit.tangent, hit.shading_normal, scene_.materials[material].tangent_rotation_deg);
+  const Frame frame = Frame::from_normal_and_tangent(bend_towards(side * hit.shading_normal, wo), tangent);
+  return {hit.position, side * hit.geometric_normal, frame, frame.to_local(wo), hit.offset, bsdfs_[material]};
 }
 
 // What the end of `ray` emits, weighted by MIS if the ray was drawn with density `bsdf_pdf`. Without one

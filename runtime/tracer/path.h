@@ -1,8 +1,10 @@
 // The path integrator: light sampling and BSDF sampling at every vertex, combined by the power heuristic.
 //
 // Surfaces are two-sided: at each hit the normals are flipped towards the viewer, so a BSDF always sees wo
-// above the surface. Light must arrive above the shading AND above the geometric surface, hence none leaks
-// through smooth-shaded meshes.
+// above the surface. Its local x axis is the direction of increasing u (turned by the material's
+// tangent_rotation_deg), the same seen from either side; y follows, for the frame stays right-handed. Light
+// must arrive above the shading AND above the geometric surface, hence none leaks through smooth-shaded
+// meshes.
 #pragma once
 
 #include <cstdint>

@@ -135,6 +135,7 @@ SceneMaterial read_material(const ConfigTable& table) {
   material.film_thickness_nm = optional_number(table, "film_thickness_nm", 0);
   material.base_ior = optional_number(table, "base_ior", 1);
   material.absorption_per_nm = optional_number(table, "absorption_per_nm", 0);
+  material.tangent_rotation_deg = table.number("tangent_rotation_deg", {-360, 360}, 0.0);
   return material;
 }
 

@@ -52,6 +52,9 @@ struct SceneMaterial {
   Rgb albedo{0.5};  // type diffuse only
   // Type skin only: what replaces the value of the recipe.
   std::optional<double> film_thickness_nm, base_ior, absorption_per_nm;
+  // Turns the local x axis of the BSDF away from the direction of increasing u, counter-clockwise about the
+  // shading normal on the outer side of the surface (that of its winding).
+  double tangent_rotation_deg = 0;
 };
 
 struct Sphere {

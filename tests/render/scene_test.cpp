@@ -47,6 +47,7 @@ TEST(Scene, ReadsEveryKey) {
     type = "skin"
     film_thickness_nm = 300
     absorption_per_nm = 0.01
+    tangent_rotation_deg = 30
     [[material]]
     name = "floor"
     type = "diffuse"
@@ -83,6 +84,7 @@ TEST(Scene, ReadsEveryKey) {
   EXPECT_EQ(scene.materials[0].film_thickness_nm, 300);
   EXPECT_EQ(scene.materials[0].base_ior, std::nullopt);
   EXPECT_EQ(scene.materials[0].absorption_per_nm, 0.01);
+  EXPECT_EQ(scene.materials[0].tangent_rotation_deg, 30);
   EXPECT_EQ(scene.materials[1].albedo, Rgb(0.25));
   ASSERT_EQ(scene.objects.size(), 2u);
   EXPECT_EQ(scene.objects[0].material, 1);
@@ -255,7 +257,7 @@ TEST(Scene, BadMeshesAreRefused) {
   expect_mesh_error(corners + "f 1 2 4\n", "m.obj:4: face index 4; allowed: 1 to 3");
   expect_mesh_error(corners + "f 1 2 -4\n", "m.obj:4: face index '-4'");
   expect_mesh_error(corners + "f 0 1 2\n", "m.obj:4: face index '0'");
-  expect_mesh_error(corners + "vn 0 0 1\nf 1//1 2//1 3//9\n", "normal index 9; allowed: 1 to 1");
+  expect_mesh_error(corners + "vn 0 0 1\nf 1//1 2//1 3//9\n", "m.obj:5: normal index 9; allowed: 1 to 1");
   expect_mesh_error(corners + "vn 0 0 0\nf 1//1 2//1 3//1\n", "normal 1 has length 0");
   expect_mesh_error(corners, "the mesh has no face");
   expect_mesh_error("", "the mesh has no face");

@@ -66,7 +66,7 @@ class Microsurface {
 
   // On to the next facet, which is certain on the way down. False if light on its way up escapes.
   bool fly(Place& at, Rng& rng) const {
-    const double step = -std::log1p(-rng.uniform()) / rate(at.travel);
+    const double step = -std::log(1 - rng.uniform()) / rate(at.travel);
     at.depth += at.leads_away() ? -step : step;
     return at.depth > 0;
   }

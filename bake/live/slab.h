@@ -17,7 +17,7 @@ struct Slab {
   bool scatters() const { return scattering_depth > 0; }
 
   // The length to the next scattering event; infinite without any.
-  double sample_free_path(Rng& rng) const { return -std::log1p(-rng.uniform()) / scattering_depth; }
+  double sample_free_path(Rng& rng) const { return -std::log(1 - rng.uniform()) / scattering_depth; }
 
   // exp(-depth / cosine) over a vertical distance, and density 1 / cosine: of a free path, over vertical
   // distance, up to the factor scattering_depth that all techniques share.

@@ -10,7 +10,7 @@ namespace {
 constexpr int kRoom = 1024, kMostRays = 128;
 
 // A walk that has lost all but this of its power goes on by roulette.
-constexpr double kFaint = 0.05;
+constexpr double kFaint = 0.15;
 
 void scale(Powers& power, int count, double factor) {
   for (int j = 0; j < count; ++j) power[j] *= factor;

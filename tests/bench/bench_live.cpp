@@ -7,12 +7,12 @@
 // ratio of their efficiencies holds on a busy machine too. Times are of the thread. `mean` includes the
 // first-surface lobe of rough films; phi = 180 degrees is the mirror side.
 #include <benchmark/benchmark.h>
-#include <time.h>
 
 #include <array>
 
 #include "bake/live/exact_bsdf.h"
 #include "bake/live/live_bsdf.h"
+#include "tests/bench/account.h"
 #include "tests/support/materials.h"
 #include "tests/support/plain_walk.h"
 
@@ -26,35 +26,6 @@ constexpr double kRoughness[] = {0, 0.1, 0.3};
 constexpr double kPairs[][3] = {{60, 30, 120}, {10, 45, 60}, {80, 20, 90}, {45, 43, 178}};  // wo, wi, phi
 
 Wavelengths one_channel(const Material& m) { return Wavelengths::monochromatic(m, kWavelengthNm); }
-
-double thread_seconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-// Calls, their time and their spread.
-struct Account {
-  double calls = 0, seconds = 0, sum = 0, sum_of_squares = 0;
-
-  template <class Call>
-  double run(int count, Call call) {
-    const double start = thread_seconds();
-    for (int i = 0; i < count; ++i) {
-      const double value = call();
-      sum += value;
-      sum_of_squares += value * value;
-    }
-    calls += count;
-    const double taken = thread_seconds() - start;
-    seconds += taken;
-    return taken;
-  }
-  double mean() const { return sum / calls; }
-  double variance() const { return (sum_of_squares - sum * mean()) / (calls - 1); }
-  double ns() const { return 1e9 * seconds / calls; }
-  double efficiency() const { return 1 / (variance() * seconds / calls); }
-};
 
 void estimate(benchmark::State& state, Technique technique) {
   const Material material = coated_diffuse(kRoughness[state.range(0)]);

@@ -98,6 +98,7 @@ double Pfmc::reflect_chance(double cos_exterior) const {
 }
 
 double Pfmc::leaving_shape(double cos_exterior) const {
+  if (!is_plain_) return cos_exterior;
   const double below2 = 1 - square(layers_.index_ratio) * (1 - square(cos_exterior));
   if (below2 <= 0) return 0;
   return (1 - mean_reflectance(cos_exterior)) * layers_.open_guide.density(below2) * cos_exterior;

@@ -77,7 +77,8 @@ class Pfmc {
   double reflect_chance(double cos_exterior) const;
   // Film reflectance as its choices below see it: mean over wavelengths by importance().
   double mean_reflectance(double cos_exterior) const;
-  // Density over wi of what leaves after a visit of the base, up to a factor and as if the film were smooth.
+  // Density over wi of what leaves after a visit of the base, up to a factor and as if the film were smooth;
+  // the cosine if the material is not plain.
   double leaving_shape(double cos_exterior) const;
 
   // The share of wavelength k in choices and in colour: its absolute weights, normalised.

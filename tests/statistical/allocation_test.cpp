@@ -6,7 +6,7 @@
 #include <new>
 
 #include "bake/live/live_bsdf.h"
-#include "tests/support/materials.h"
+#include "tests/support/configurations.h"
 
 namespace {
 
@@ -35,7 +35,7 @@ TEST(Allocation, IsCounted) {
 
 TEST(Allocation, NoneInACallOfTheLiveModel) {
   const Vec3 wo = spherical_direction(0.3, 0), wi = spherical_direction(1, 2);
-  for (const auto& [name, material] : test::all_modes()) {
+  for (const auto& [name, material] : test::every_mode()) {
     const Pfmc pfmc(material, test::twelve_wavelengths(material));
     const LiveBsdf bsdf(material, test::twelve_wavelengths(material));
     Rng rng(16, 0);

@@ -30,5 +30,18 @@ inline std::vector<Configuration> in_both_spectra(const std::vector<NamedMateria
 }
 
 inline std::vector<Configuration> all_configurations() { return in_both_spectra(all_modes()); }
+inline std::vector<Configuration> general_configurations() { return in_both_spectra(general_modes()); }
+
+// Plain and general.
+inline std::vector<Configuration> every_configuration() {
+  auto result = all_configurations();
+  for (auto& configuration : general_configurations()) result.push_back(std::move(configuration));
+  return result;
+}
+inline std::vector<NamedMaterial> every_mode() {
+  auto result = all_modes();
+  for (auto& mode : general_modes()) result.push_back(std::move(mode));
+  return result;
+}
 
 }  // namespace sunbeam::test

@@ -37,6 +37,49 @@ inline std::vector<NamedMaterial> all_modes(double roughness = 0.3, double optic
   return result;
 }
 
+// One of each kind that is not plain (Material::is_plain): scattering pigments, anisotropic films, facets met
+// many times, together and apart, with and without bending; bright, so that walks are long.
+inline std::vector<NamedMaterial> general_modes() {
+  Material bright;
+  bright.film_thickness_nm = 350;
+  bright.base_ior = 1.4;
+  bright.absorption_per_nm = 0.05;
+  bright.albedo = {0.9, 0.8, 0.6};
+  const auto scattering = [](Material m, double optical_thickness, double g) {
+    m.scattering_per_nm = optical_thickness / m.pigment_thickness_nm;
+    m.anisotropy = g;
+    return m;
+  };
+  const auto film = [&](const Roughness& roughness, Microfacet microfacet, Transmission transmission) {
+    Material m = bright;
+    m.roughness = roughness;
+    m.microfacet = microfacet;
+    m.transmission = transmission;
+    return m;
+  };
+  const auto single = Microfacet::single, multiple = Microfacet::multiple;
+  const auto refract = Transmission::refract, straight = Transmission::straight;
+
+  std::vector<NamedMaterial> modes = {
+      {"smooth slab", scattering(film(0, single, refract), 1, 0.5)},
+      {"rough slab", scattering(film(0.3, single, refract), 2, 0.8)},
+      {"straight slab", scattering(film(0.3, single, straight), 0.5, -0.3)},
+      {"anisotropic", film({0.1, 0.4}, single, refract)},
+      {"anisotropic product", film({0.4, 0.15}, single, straight)},
+      {"multiple", film(0.3, multiple, refract)},
+      {"multiple very rough", film(0.9, multiple, refract)},
+      {"multiple straight product", film(0.5, multiple, straight)},
+      {"multiple index-matched", film(0.4, multiple, refract)},
+      {"multiple nearly index-matched", film(0.4, multiple, refract)},
+      {"all", scattering(film({0.2, 0.5}, multiple, refract), 1, 0.9)},
+  };
+  for (auto& [name, m] : modes) {
+    if (name.ends_with("product")) m.absorption_path = AbsorptionPath::product;
+    if (name.ends_with("index-matched")) m.base_ior = name.find("nearly") == std::string::npos ? 1 : 1.01;
+  }
+  return modes;
+}
+
 // A coat of index 1.5 without a film over a diffuse base, as other renderers have it.
 inline Material coated_diffuse(double roughness) {
   Material m;

@@ -91,16 +91,16 @@ TEST(Anisotropic, HasTheSymmetriesOfTheFilm) {
   }
 }
 
-// Light that passes sees how rough the film is along its own azimuth: at grazing the shadow of the rough axis
-// is deeper. Nothing in the tests above would miss it.
+// Light that passes sees how rough the film is along its own azimuth, by percents at grazing. A model without
+// it would have all the symmetries above.
 TEST(Anisotropic, RestDependsOnAzimuth) {
-  Material m = brushed({0.05, 0.8}).back().material;  // refracting
+  const Material m = brushed({0.05, 0.8}).back().material;
   ASSERT_EQ(m.transmission, Transmission::refract);
   const Vec3 x = spherical_direction(1.3, 0), y = spherical_direction(1.3, kPi / 2);
   Rng rng(4, 0);
-  const auto along = test::mean_rest(Pfmc(m), x, kIn, Technique::unidirectional, kEffort, rng);
-  const auto across = test::mean_rest(Pfmc(m), y, kIn, Technique::unidirectional, kEffort, rng);
-  EXPECT_GT(std::abs(along.g.mean() - across.g.mean()), 0.05 * along.g.mean());
+  const auto along = test::mean_rest(Pfmc(m), x, kIn, Technique::unidirectional, kEffort, rng).g;
+  const auto across = test::mean_rest(Pfmc(m), y, kIn, Technique::unidirectional, kEffort, rng).g;
+  EXPECT_GT(test::deviation(along.mean(), along.std_error(), across.mean(), across.std_error()), 6);
 }
 
 // Against the analog walk, cell by cell, where azimuth counts and where the slab scatters too. 2 roughnesses
@@ -136,10 +136,10 @@ TEST(Anisotropic, FirstSurfaceIsSampledByItsDensity) {
     for (const Vec3& wo : {kOut, spherical_direction(0.3, 2.5)}) {
       Material m = brushed(roughness).back().material;
       m.albedo = Rgb(0);
-      const auto result = test::chi_square_of_sampling(
-          LiveBsdf(m), wo, {.samples = 100000, .points = 16, .pdf_samples = 2}, 6);
+      const auto result = test::chi_square_of_sampling(LiveBsdf(m), wo,
+                                                       {.samples = 60000, .points = 12, .pdf_samples = 2}, 6);
       EXPECT_GT(result.p_value, test::sidak(1e-3, 6)) << roughness.u << " cos " << wo.z;
-      EXPECT_GT(result.degrees, 50) << roughness.u;
+      EXPECT_GT(result.degrees, 30) << roughness.u;
     }
 }
 
@@ -147,7 +147,7 @@ TEST(Anisotropic, FirstSurfaceIsSampledByItsDensity) {
 TEST(Anisotropic, SamplesFollowThePdf) {
   for (const auto& [name, material, wavelengths] : test::in_both_spectra(brushed({0.1, 0.4}))) {
     const auto result = test::chi_square_of_sampling(LiveBsdf(material, wavelengths), kOut,
-                                                     {.samples = 60000, .pdf_samples = 16}, 7);
+                                                     {.samples = 60000, .points = 2, .pdf_samples = 32}, 7);
     EXPECT_GT(result.p_value, test::sidak(1e-3, 8)) << name;
     EXPECT_GT(result.degrees, 150) << name;
   }

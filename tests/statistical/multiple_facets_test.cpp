@@ -124,10 +124,10 @@ TEST(MultipleFacets, RestOverBlackAgreesWithThePlainWalk) {
 }
 
 // Over a base, in total, with and without pigment. 3 surfaces x 2 modes x 2 pigments x 3 channels at 4
-// standard errors (6e-5), each of 0.14 %: 2.3e-3 in all.
+// standard errors (6e-5), each of 0.1 % of the light: 2.3e-3 in all.
 TEST(MultipleFacets, AlbedoAgreesWithThePlainWalk) {
   const Vec3 wo = spherical_direction(0.9, 0.4);
-  const test::Effort effort{.error = 1.4e-3};
+  const test::Effort effort{.error = 0, .absolute = 1e-3};
   for (const auto& roughness : {Roughness(0.3), Roughness(0.9), Roughness(0.2, 0.7)})
     for (const auto transmission : kTransmissions)
       for (const bool has_pigment : {false, true}) {
@@ -146,7 +146,7 @@ TEST(MultipleFacets, AlbedoAgreesWithThePlainWalk) {
         });
         const auto found = test::sampled_albedo(LiveBsdf(m), wo, effort, rng);
         test::expect_agree(found, expected, 4, 0, describe(m) + (has_pigment ? " pigment" : ""));
-        for (int c = 0; c < 3; ++c) EXPECT_LE(found[c].std_error(), 1.4e-3 * found[c].mean()) << describe(m);
+        for (int c = 0; c < 3; ++c) EXPECT_LE(found[c].std_error(), 1e-3) << describe(m);
       }
 }
 
@@ -189,6 +189,26 @@ TEST(MultipleFacets, SmallRoughnessTendsToSingle) {
   }
 }
 
+// What is not asked for is not followed: the default is the single-scattering film that the exact evaluator
+// solves, though at roughness 1 the two models are far apart. 4 modes x 3 channels at 4.5 standard errors:
+// 8e-5.
+TEST(MultipleFacets, SingleIsTheDefault) {
+  const Vec3 wo = spherical_direction(0.7, 0), wi = spherical_direction(0.4, 2);
+  ASSERT_EQ(Material().microfacet, Microfacet::single);
+  for (const auto& [name, material] : test::all_modes(1)) {
+    if (material.is_smooth()) continue;
+    Material multiple = material;
+    multiple.microfacet = Microfacet::multiple;
+    const Rgb single = ExactRest(material, Wavelengths::rgb3(material)).rest(wo, wi);
+    Rng rng(10, 0);
+    const auto rest = [&](const Material& m) {
+      return test::mean_rest(Pfmc(m), wo, wi, Technique::unidirectional, {2e-3, 0, 500, 30000}, rng);
+    };
+    test::expect_agree(rest(material), single, 4.5, 1e-3, name);
+    EXPECT_GT(rest(multiple).g.mean(), 1.02 * single.g) << name;
+  }
+}
+
 // 4 surfaces x 2 modes x 2 techniques x 3 channels at 4.5 standard errors (7e-6): 4e-4 in all.
 TEST(MultipleFacets, EvalIsReciprocal) {
   const Vec3 a = spherical_direction(0.4, 0), b = spherical_direction(1.2, 2);
@@ -214,7 +234,7 @@ TEST(MultipleFacets, SamplesFollowThePdf) {
   for (const auto& [name, material, wavelengths] : test::in_both_spectra(materials)) {
     const auto result =
         test::chi_square_of_sampling(LiveBsdf(material, wavelengths), spherical_direction(0.9, 0.4),
-                                     {.samples = 40000, .points = 3, .pdf_samples = 16}, 8);
+                                     {.samples = 40000, .points = 2, .pdf_samples = 16}, 8);
     EXPECT_GT(result.p_value, test::sidak(1e-3, 12)) << name;
     EXPECT_GT(result.degrees, 100) << name;
   }

@@ -170,7 +170,11 @@ std::optional<BsdfSample> Pfmc::sample_stack(const Vec3& wo, Rng& rng, const Pfm
 // Reciprocity of the chances turns leaving along wi into entering there, as for powers.
 double Pfmc::estimate_stack_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const {
   double density = 0;
-  stack(walk::Carrying::chance).add_unidirectional(wo, &wi, 1, rng, &density);
+  const walk::Stack chances = stack(walk::Carrying::chance);
+  if (stack_.slab.scatters())
+    chances.add_bidirectional(wo, wi, rng, &density);
+  else
+    chances.add_unidirectional(wo, &wi, 1, rng, &density);
   return density * wi.z;
 }
 

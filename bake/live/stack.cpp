@@ -61,7 +61,8 @@ Stack::Stack(const Layers& layers, const StackLayers& stack, const double* impor
       importance_(importance),
       kernels_(kernels),
       chance_(carrying == Carrying::chance),
-      count_(chance_ ? 1 : layers.count) {}
+      count_(chance_ ? 1 : layers.count),
+      camera_events_(std::min(2 + static_cast<int>(stack.slab.g / (1 - stack.slab.g)), kMostCameraEvents)) {}
 
 double Stack::total(const Powers& power) const {
   double sum = 0;
@@ -87,40 +88,39 @@ Vec3 Stack::sample_normal(const Vec3& w, Rng& rng) const {
 }
 
 // What single facets lose, for light that comes along `from` and goes on along `to`. As a chance there is no
-// loss; but an exit, drawn from outside, stands for the walk in the other direction.
-double Stack::shadowing(const Vec3& from, const Vec3& to, bool is_exit) const {
+// loss; but the camera's walk stands for one in the other direction.
+double Stack::shadowing(const Vec3& from, const Vec3& to, bool is_camera) const {
   if (layers_.is_smooth()) return 1;
   const Ggx& ggx = stack_.facets.ggx();
-  if (chance_) return is_exit ? ggx.g1(to) / ggx.g1(from) : 1;
+  if (chance_) return is_camera ? ggx.g1(to) / ggx.g1(from) : 1;
   return ggx.g2_over_g1(from, to);
 }
 
-// From outside along w; `power` becomes the film's, `travel` the way down below it. False if it is lost.
-bool Stack::enter(const Vec3& w, bool is_exit, Powers& power, Vec3& travel, Rng& rng) const {
+// Single facets, from outside along w; `power` becomes the film's, `travel` the way down below it. False if
+// it is lost.
+bool Stack::pass_once(const Vec3& w, bool is_camera, Powers& power, Vec3& travel, Rng& rng) const {
   const Vec3 h = sample_normal(w, rng);
   Vec3 m = w;
   if (layers_.bends && (!refract(w, h, layers_.index_ratio, m) || m.z <= 0)) return false;
   Powers r;
   reflectances(Side::outside, dot(w, h), r);
-  const double share = layers_.straight ? 1 : shadowing(w, m, is_exit);
+  const double share = layers_.straight ? 1 : shadowing(w, m, is_camera);
   for (int j = 0; j < count_; ++j) power[j] = (1 - r[j]) * share;
   travel = -m;
   return true;
 }
 
 // Light on its way up is thrown back; what leaves is not followed.
-bool Stack::reflect_below(Vec3& travel, Powers& power, Rng& rng) const {
+bool Stack::reflect_below(Vec3& travel, bool is_camera, Powers& power, Rng& rng) const {
   if (stack_.multiple) {
     const Place at = stack_.facets.first_facet(Side::inside, -travel, rng);
-    return wander(
-        at, power, travel, rng, [](const Place&, const Powers&, int, bool) {},
-        [](const Place&, const Powers&) {});
+    return wander(at, power, travel, rng, [](const Place&, const Powers&) {});
   }
   const Vec3 h = sample_normal(travel, rng), m = reflect(travel, h);
   if (m.z <= 0) return false;
   Powers r;
   reflectances(Side::inside, dot(travel, h), r);
-  const double share = shadowing(travel, m, false);
+  const double share = shadowing(travel, m, is_camera);
   for (int j = 0; j < count_; ++j) power[j] *= r[j] * share;
   travel = -m;
   return true;
@@ -133,48 +133,51 @@ bool Stack::pass(const Place& at, const Vec3& h, Place& passed) const {
   return !layers_.bends || refract(-at.travel, h, ratio, passed.travel);
 }
 
+// One facet: light goes on mirrored or passing, in proportion to the power that stays(place) says is still of
+// use there; `through`, the same for light that leaves facets as a whole behind (straight). `power` is
+// weighed for the choice alone.
+template <class Stays>
+Stack::Turn Stack::turn(Place& at, Powers& power, double through, Rng& rng, Stays stays) const {
+  const Vec3 h = stack_.facets.sample_facet(at.travel, rng);
+  Powers r;
+  reflectances(at.side, -dot(at.travel, h), r);
+  Place mirrored{at.side, reflect(-at.travel, h), at.depth}, passed = at;
+  const double stays_r = stays(mirrored);
+  double stays_t = through;
+  if (!layers_.straight) stays_t = pass(at, h, passed) ? stays(passed) : 0;
+  double share_r = 0, share_t = 0;
+  for (int j = 0; j < count_; ++j) share_r += power[j] * r[j], share_t += power[j] * (1 - r[j]);
+  share_r *= stays_r, share_t *= stays_t;
+  const double sum = share_r + share_t;
+  if (!(sum > 0)) return {Turn::lost, 0};
+  if (rng.uniform() * sum < share_r) {
+    for (int j = 0; j < count_; ++j) power[j] *= r[j] * (sum / share_r);
+    at = mirrored;
+    return {Turn::mirrored, stays_r};
+  }
+  for (int j = 0; j < count_; ++j) power[j] *= (1 - r[j]) * (sum / share_t);
+  at = passed;
+  return {Turn::passed, stays_t};
+}
+
 // Many facets, from the first one met at `at` until light comes out below: `travel` is its way down. What
-// would leave upwards stays, with the chance that it does as its weight: others account for it.
-// on_facet(at, power, number of facets met before, none of them mirrored) and on_passing(beyond, power), the
-// latter as long as none has mirrored.
-template <class OnFacet, class OnPassing>
-bool Stack::wander(Place at, Powers& power, Vec3& travel, Rng& rng, OnFacet on_facet,
-                   OnPassing on_passing) const {
+// would leave upwards is kept, with the chance that it meets another facet as its weight: others account for
+// it. on_passing(beyond, power) as long as none has mirrored.
+template <class OnPassing>
+bool Stack::wander(Place at, Powers& power, Vec3& travel, Rng& rng, OnPassing on_passing) const {
   const Microsurface& facets = stack_.facets;
-  const bool is_entering = at.side == Side::outside;
+  const double through = at.side == Side::outside ? 1 : 0;
   const auto stays = [&](const Place& place) {
     return place.side == Side::outside ? 1 - facets.escape_chance(place) : 1;
   };
   const double least = kFaint * total(power);
-  bool only_passed = true;
-  for (int order = 0;; ++order) {
-    on_facet(at, power, order, only_passed);
-    const Vec3 h = facets.sample_facet(at.travel, rng);
-    Powers r;
-    reflectances(at.side, -dot(at.travel, h), r);
-    Place mirrored{at.side, reflect(-at.travel, h), at.depth}, passed;
-    double share_r = 0, share_t = 0;
-    for (int j = 0; j < count_; ++j) share_r += power[j] * r[j], share_t += power[j] * (1 - r[j]);
-    const double stays_r = stays(mirrored);
-    double stays_t = is_entering ? 1 : 0;  // straight: through the film as a whole
-    if (!layers_.straight) stays_t = pass(at, h, passed) ? stays(passed) : 0;
-    share_r *= stays_r, share_t *= stays_t;
-    const double sum = share_r + share_t;
-    if (!(sum > 0)) return false;
-    if (rng.uniform() * sum < share_r) {
-      for (int j = 0; j < count_; ++j) power[j] *= r[j] * (stays_r * sum / share_r);
-      at = mirrored;
-      only_passed = false;
-    } else {
-      for (int j = 0; j < count_; ++j) power[j] *= (1 - r[j]) * (sum / share_t);
-      if (layers_.straight) {
-        scale(power, count_, stays_t);
-        return true;
-      }
-      at = passed;
-      if (only_passed) on_passing(at, power);
-      scale(power, count_, stays_t);
-    }
+  for (bool only_passed = true;;) {
+    const Turn taken = turn(at, power, through, rng, stays);
+    if (taken.kind == Turn::lost) return false;
+    if (taken.kind == Turn::passed && layers_.straight) return true;
+    only_passed = only_passed && taken.kind == Turn::passed;
+    if (only_passed) on_passing(at, power);
+    scale(power, count_, taken.stays);
     if (at.side == Side::outside) {
       facets.fly_back(at, rng);
     } else if (!facets.fly(at, rng)) {
@@ -182,6 +185,26 @@ bool Stack::wander(Place at, Powers& power, Vec3& travel, Rng& rng, OnFacet on_f
       return true;
     }
     if (!survives(power, count_, total(power), least, rng)) return false;
+  }
+}
+
+// Facets part: light from wi that stays among facets, and at each of them what the exits see of it.
+void Stack::follow_facets(const Vec3& wi, const Exit* exits, int count, Rng& rng, double* sums) const {
+  const Microsurface& facets = stack_.facets;
+  Place at = facets.first_facet(Side::outside, -wi, rng);
+  Powers power;
+  std::fill_n(power.begin(), count_, 1.0);
+  const double least = kFaint * total(power);
+  bool only_passed = true;
+  for (int order = 0;; ++order) {
+    for (int k = 0; k < count; ++k) connect_facet(at, power, order, only_passed, exits[k], sums + k * count_);
+    const Turn taken =
+        turn(at, power, 0, rng, [&](const Place& place) { return 1 - facets.escape_chance(place); });
+    if (taken.kind == Turn::lost) return;
+    only_passed = only_passed && taken.kind == Turn::passed;
+    scale(power, count_, taken.stays);
+    facets.fly_back(at, rng);
+    if (!survives(power, count_, total(power), least, rng)) return;
   }
 }
 
@@ -207,9 +230,9 @@ void Stack::leave_base(Powers& power, double arrived, Vec3& travel, Rng& rng) co
     for (int j = 0; j < count_; ++j) power[j] *= std::exp(-layers_.tau[j] / (arrived * travel.z));
 }
 
-// Between film and base until the walk ends. `visit` has: leg(flight), of every straight leg; meet(depth,
-// travel, power) before and scattered(phase, depth, travel, power) after a scattering event; thrown_back(
-// travel, power) from the film; at_base(cosine, power), false to end there.
+// Between film and base until the walk ends. `visit` has: kIsCamera; leg(flight), of every straight leg;
+// meet(depth, travel, power) before and scattered(phase, depth, travel, power) after a scattering event;
+// thrown_back( travel, power) from the film; at_base(cosine, power), false to end there.
 template <class Visit>
 void Stack::walk_below(Vec3 travel, Powers& power, Rng& rng, Visit& visit) const {
   const Slab& slab = stack_.slab;
@@ -235,33 +258,40 @@ void Stack::walk_below(Vec3 travel, Powers& power, Rng& rng, Visit& visit) const
       leave_base(power, cosine, travel, rng);
     } else {
       depth = 0;
-      if (!reflect_below(travel, power, rng)) return;
+      if (!reflect_below(travel, Visit::kIsCamera, power, rng)) return;
       visit.thrown_back(travel, power);
     }
     if (!survives(power, count_, total(power), least, rng)) return;
   }
 }
 
-// Draws an exit towards wo and what it passes on the way.
+// From outside along w to below the film; on_passing as in wander().
+template <class OnPassing>
+bool Stack::enter(const Vec3& w, bool is_camera, Powers& power, Vec3& travel, Rng& rng,
+                  OnPassing on_passing) const {
+  if (!stack_.multiple) return pass_once(w, is_camera, power, travel, rng);
+  std::fill_n(power.begin(), count_, 1.0);
+  travel = -w;
+  return wander(stack_.facets.first_facet(Side::outside, -w, rng), power, travel, rng, on_passing);
+}
+
 void Stack::draw_exit(const Vec3& wo, Exit& exit, Rng& rng) const {
   exit.wo = wo;
   exit.rays = 0;
-  if (!stack_.multiple) {
-    exit.is_open = enter(wo, true, exit.power, exit.up, rng);
-  } else {
-    for (int j = 0; j < count_; ++j) exit.power[j] = 1;
-    exit.up = -wo;
-    exit.is_open = wander(
-        stack_.facets.first_facet(Side::outside, -wo, rng), exit.power, exit.up, rng,
-        [](const Place&, const Powers&, int, bool) {},
-        [&](const Place& beyond, const Powers& power) {
-          if (exit.rays == kMostRays || (exit.rays + 1) * count_ > kRoom) return;
-          const Vec3& x = beyond.travel;
-          exit.ray[exit.rays] = {beyond.side, x.x, x.y, x.z, beyond.depth};
-          std::copy_n(power.data(), count_, &exit.ray_power[exit.rays++ * count_]);
-        });
-  }
+  exit.is_open = enter(wo, true, exit.power, exit.up, rng, [&](const Place& beyond, const Powers& power) {
+    if (exit.rays == kMostRays || (exit.rays + 1) * count_ > kRoom) return;
+    const Vec3& x = beyond.travel;
+    exit.ray[exit.rays] = {beyond.side, x.x, x.y, x.z, beyond.depth};
+    std::copy_n(power.data(), count_, &exit.ray_power[exit.rays++ * count_]);
+  });
   exit.up = -exit.up;
+}
+
+// The light's way in, to its first arrival below; and, apart from it, the facets part of all exits.
+bool Stack::draw_entry(const Vec3& wi, const Exit* exits, int count, Powers& power, Vec3& travel, Rng& rng,
+                       double* sums) const {
+  if (stack_.multiple) follow_facets(wi, exits, count, rng, sums);
+  return enter(wi, false, power, travel, rng, [](const Place&, const Powers&) {});
 }
 
 // Facets part: light about to meet a facet at `at`, which mirrors it towards an exit or lets it pass there.
@@ -303,21 +333,6 @@ void Stack::pass_towards(const Place& at, const Powers& power, const Vec3& wo, d
   for (int j = 0; j < count_; ++j) sums[j] += power[j] * (1 - r[j]) * factor;
 }
 
-// From outside along wi to below the film; on the way the facets part of every exit.
-bool Stack::draw_entry(const Vec3& wi, const Exit* exits, int count, Powers& power, Vec3& travel, Rng& rng,
-                       double* sums) const {
-  if (!stack_.multiple) return enter(wi, false, power, travel, rng);
-  for (int j = 0; j < count_; ++j) power[j] = 1;
-  travel = -wi;
-  return wander(
-      stack_.facets.first_facet(Side::outside, -wi, rng), power, travel, rng,
-      [&](const Place& at, const Powers& arrived, int order, bool only_passed) {
-        for (int k = 0; k < count; ++k)
-          connect_facet(at, arrived, order, only_passed, exits[k], sums + k * count_);
-      },
-      [](const Place&, const Powers&) {});
-}
-
 // Slab part: light that scatters at `depth`, towards what lies at the depth `origin` against y and carries
 // `beyond`. `others` is the sum of 1 / (phase flight) over the events where the path could have been
 // connected instead: the balance heuristic, for a technique leaves exactly these two densities out.
@@ -344,6 +359,7 @@ void Stack::add_base(const Powers& light, const Powers& camera, double walks, do
 
 // The light's walk below the film, seen by exits that nothing scatters on.
 struct Stack::LightVisit {
+  static constexpr bool kIsCamera = false;
   const Stack& stack;
   const Exit* exits;
   int count;
@@ -407,13 +423,17 @@ struct Stack::CameraRay {
 };
 
 struct Stack::CameraVisit {
+  static constexpr bool kIsCamera = true;
+  explicit CameraVisit(int most) : most_events(most) {}
+
+  int most_events;
   Powers arrived{};
   int rays = 0, events = 0;
   double others = 0, last_flight = 0;
-  std::array<CameraRay, 2 * kCameraEvents + 1> ray;
+  std::array<CameraRay, 2 * kMostCameraEvents + 1> ray;
 
   void add(double origin, const Vec3& travel, const Powers& power) {
-    if (events <= kCameraEvents) ray[rays++] = {origin, -travel, power, others, events};
+    if (events <= most_events) ray[rays++] = {origin, -travel, power, others, events};
   }
   void leg(double flight) { last_flight = flight; }
   void meet(double, const Vec3&, const Powers&) {}
@@ -431,13 +451,14 @@ struct Stack::CameraVisit {
 
 // Of the light's last events, the latest first: what the camera could have done in their place.
 struct Stack::PairedLightVisit {
+  static constexpr bool kIsCamera = false;
   const Stack& stack;
   const CameraVisit& camera;
   double* sums;
   Powers arrived{};
   bool has_seen_base = false;
-  double last_phase = 0;                        // of the event that began this leg, else 0
-  std::array<double, kCameraEvents> inverse{};  // 1 / (phase flight)
+  double last_phase = 0;                            // of the event that began this leg, else 0
+  std::array<double, kMostCameraEvents> inverse{};  // 1 / (phase flight)
 
   void leg(double flight) {
     if (last_phase == 0) return;
@@ -450,7 +471,7 @@ struct Stack::PairedLightVisit {
     for (int k = 0; k < camera.rays; ++k) {
       const CameraRay& ray = camera.ray[k];
       double others = ray.others;
-      for (int e = 0; e < kCameraEvents - ray.events; ++e) others += inverse[e];
+      for (int e = 0; e < stack.camera_events_ - ray.events; ++e) others += inverse[e];
       stack.scatter_towards(depth, travel, power, ray.up, ray.origin, ray.power, others, sums);
     }
   }
@@ -469,7 +490,7 @@ void Stack::add_bidirectional(const Vec3& wi, const Vec3& wo, Rng& rng, double* 
   for (int walk = 0; walk < kWalks; ++walk) {
     Exit exit;
     draw_exit(wo, exit, rng);
-    CameraVisit seen;
+    CameraVisit seen(camera_events_);
     if (exit.is_open) {
       Powers power = exit.power;
       seen.add(0, -exit.up, power);

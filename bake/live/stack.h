@@ -45,9 +45,10 @@ struct StackSample {
 
 class Stack {
  public:
-  static constexpr int kWalks = 4;         // in one estimate
-  static constexpr int kMostExits = 8;     // directions served by one walk
-  static constexpr int kCameraEvents = 6;  // scattering events of the bidirectional camera walk that connect
+  static constexpr int kWalks = 4;      // in one estimate
+  static constexpr int kMostExits = 8;  // directions served by one walk
+  // Scattering events of the bidirectional camera walk that connect: as many as it takes light to turn round.
+  static constexpr int kMostCameraEvents = 16;
 
   // `importance` of each wavelength in choices, summing to 1. The arguments must outlive this.
   Stack(const Layers& layers, const StackLayers& stack, const double* importance, const Kernels& kernels,
@@ -69,6 +70,10 @@ class Stack {
   struct CameraRay;
   struct CameraVisit;
   struct PairedLightVisit;
+  struct Turn {
+    enum Kind { lost, mirrored, passed } kind;
+    double stays;
+  };
   // Light that has met the film: on the side where it is now, its frame and travel, away from the facets.
   struct Outcome {
     bool is_lost = false;
@@ -83,12 +88,18 @@ class Stack {
   double mean(const Powers& r) const;
   double total(const Powers& power) const;
   Vec3 sample_normal(const Vec3& w, Rng& rng) const;
-  bool enter(const Vec3& w, bool is_exit, Powers& power, Vec3& travel, Rng& rng) const;
-  bool reflect_below(Vec3& travel, Powers& power, Rng& rng) const;
-  template <class OnFacet, class OnPassing>
-  bool wander(Place at, Powers& power, Vec3& travel, Rng& rng, OnFacet on_facet, OnPassing on_passing) const;
+  bool pass_once(const Vec3& w, bool is_camera, Powers& power, Vec3& travel, Rng& rng) const;
+  template <class OnPassing>
+  bool enter(const Vec3& w, bool is_camera, Powers& power, Vec3& travel, Rng& rng,
+             OnPassing on_passing) const;
+  bool reflect_below(Vec3& travel, bool is_camera, Powers& power, Rng& rng) const;
+  template <class Stays>
+  Turn turn(Place& at, Powers& power, double through, Rng& rng, Stays stays) const;
+  template <class OnPassing>
+  bool wander(Place at, Powers& power, Vec3& travel, Rng& rng, OnPassing on_passing) const;
+  void follow_facets(const Vec3& wi, const Exit* exits, int count, Rng& rng, double* sums) const;
   bool pass(const Place& at, const Vec3& h, Place& passed) const;
-  double shadowing(const Vec3& from, const Vec3& to, bool is_exit) const;
+  double shadowing(const Vec3& from, const Vec3& to, bool is_camera) const;
   bool choose_mirror(Side side, double cosine, Powers& power, double& chance, Rng& rng) const;
   void wander_freely(Place at, Powers& power, Outcome& out, Rng& rng) const;
   Outcome meet_film(Side side, const Vec3& x, Powers& power, Rng& rng) const;
@@ -119,6 +130,7 @@ class Stack {
   const Kernels& kernels_;
   bool chance_;
   int count_;
+  int camera_events_;
 };
 
 }  // namespace sunbeam::walk

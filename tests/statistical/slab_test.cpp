@@ -275,8 +275,8 @@ TEST(Slab, ThroughputIsValueOverDensity) {
   }
 }
 
-// Forward peaks do not make fireflies: of 2000 estimates none is above 50 times their mean, or 300 times at
-// grazing, where few and short connections make up the value.
+// Forward peaks do not make fireflies: of 2000 estimates none is above 25 times their mean, or 100 times at
+// grazing, where few and short connections make up the value (of 20000: 11 and 36).
 TEST(Slab, NoFireflies) {
   const Vec3 wi = spherical_direction(0.7, 0);
   const Vec3 out[] = {spherical_direction(0.7, 0), spherical_direction(0.7, kPi),
@@ -293,7 +293,7 @@ TEST(Slab, NoFireflies) {
           mean.add(value);
           largest = std::max(largest, value);
         }
-        EXPECT_LT(largest, (wo.z > 0.5 ? 50 : 300) * mean.mean())
+        EXPECT_LT(largest, (wo.z > 0.5 ? 25 : 100) * mean.mean())
             << roughness << ' ' << to_string(transmission) << ' ' << wo.z;
       }
     }

@@ -118,7 +118,7 @@ Layers::Layers(const Material& material, const Wavelengths& wavelengths)
   const BelowFilm below(*this);
   guide = below.going_on();
   open_guide = below.leaving();
-  worth_below = std::clamp(below.worth(), kLeastWorth, 1.0);
+  worth_below = material.scatters() ? 1 : std::clamp(below.worth(), kLeastWorth, 1.0);
 }
 
 void Layers::summarise() {

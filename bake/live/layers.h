@@ -33,7 +33,8 @@ struct Layers {
 
   Guide guide;         // for walks that go on: towards what the film throws back and the pigment lets through
   Guide open_guide;    // for walks that may leave: towards what gets out, now or later
-  double worth_below;  // of the light that enters the film, about what leaves again; at least kLeastWorth
+  double worth_below;  // of the light that enters the film, about what leaves again; at least kLeastWorth, 1
+                       // if it scatters
 
   // Takes `picks` of the wavelengths of `all`, the same material: the k-th becomes its number which(k).
   template <class Which>
@@ -46,6 +47,11 @@ struct Layers {
       tau[k] = all.tau[which(k)];
     }
     summarise();
+  }
+
+  // Of mirroring at the upper surface: equal shares of what reflects there and of what comes back from below.
+  double entry_chance(double reflectance) const {
+    return reflectance / (reflectance + (1 - reflectance) * worth_below);
   }
 
   bool is_smooth() const { return alpha == 0; }

@@ -24,6 +24,7 @@ struct Place {
   Side side;
   Vec3 travel;
   double depth;
+  bool is_entry = false;  // the first facet of a walk from outside that sample() would make
 
   bool leads_away() const { return travel.z > 0; }
 };

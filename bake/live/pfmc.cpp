@@ -64,11 +64,6 @@ double Pfmc::mean_power(const Powers& powers) const {
   return std::clamp(sum, 0.0, 1.0);
 }
 
-// Of reflecting at the upper surface: equal shares of what reflects and of what comes back from below.
-double Pfmc::entry_chance(double reflectance) const {
-  return reflectance / (reflectance + (1 - reflectance) * layers_.worth_below);
-}
-
 Pfmc::Powers Pfmc::reflectances(const walk::FilmSide& film, double cosine) const {
   Powers powers;
   const walk::FilmLanes<double> lanes(film, layers_.phases, std::clamp(cosine, 0.0, 1.0));
@@ -93,8 +88,7 @@ double Pfmc::mean_reflectance(double cos_exterior) const {
 }
 
 double Pfmc::reflect_chance(double cos_exterior) const {
-  if (!is_plain_) return mean_reflectance(cos_exterior);
-  return entry_chance(mean_reflectance(cos_exterior));
+  return layers_.entry_chance(mean_reflectance(cos_exterior));
 }
 
 double Pfmc::leaving_shape(double cos_exterior) const {
@@ -184,7 +178,7 @@ std::optional<BsdfSample> Pfmc::sample(const Vec3& wo, Rng& rng, const Pfmc& bel
   const Lane events(layers_);
   const auto facet = events.meet(wo.z, rng);
   const Powers power = reflectances(layers_.film, facet.cosine);
-  const double reflect_chance = entry_chance(mean_power(power));
+  const double reflect_chance = layers_.entry_chance(mean_power(power));
   if (rng.uniform() < reflect_chance) {
     const auto up = events.mirror(wo.z, facet);
     if (up.weight == 0) return {};

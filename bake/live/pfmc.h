@@ -94,7 +94,6 @@ class Pfmc {
  private:
   using Powers = walk::Spectrum<double>;
   double mean_power(const Powers& powers) const;
-  double entry_chance(double reflectance) const;
   Rgb fold(const double* values) const;
   Powers reflectances(const walk::FilmSide& film, double cosine) const;
   std::optional<BsdfSample> sample_below(double cosine, Powers& throughput, Rng& rng) const;

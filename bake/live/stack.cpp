@@ -70,16 +70,18 @@ double Stack::total(const Powers& power) const {
   return sum;
 }
 
-double Stack::mean(const Powers& r) const {
-  double sum = 0;
-  for (int j = 0; j < layers_.count; ++j) sum += importance_[j] * r[j];
-  return std::clamp(sum, 0.0, 1.0);
+// How often sample() takes a facet to mirror.
+double Stack::mirror_chance(const Place& at, const Powers& r) const {
+  double mean = 0;
+  for (int j = 0; j < layers_.count; ++j) mean += importance_[j] * r[j];
+  mean = std::clamp(mean, 0.0, 1.0);
+  return at.is_entry ? layers_.entry_chance(mean) : mean;
 }
 
-void Stack::reflectances(Side side, double cosine, Powers& r) const {
-  const FilmSide& film = side == Side::outside ? layers_.film : layers_.film_below;
+void Stack::reflectances(const Place& at, double cosine, Powers& r) const {
+  const FilmSide& film = at.side == Side::outside ? layers_.film : layers_.film_below;
   kernels_.reflectances(film, layers_.phases, std::clamp(cosine, 0.0, 1.0), r.data());
-  if (chance_) r[0] = mean(r);
+  if (chance_) r[0] = mirror_chance(at, r);
 }
 
 Vec3 Stack::sample_normal(const Vec3& w, Rng& rng) const {
@@ -103,7 +105,7 @@ bool Stack::pass_once(const Vec3& w, bool is_camera, Powers& power, Vec3& travel
   Vec3 m = w;
   if (layers_.bends && (!refract(w, h, layers_.index_ratio, m) || m.z <= 0)) return false;
   Powers r;
-  reflectances(Side::outside, dot(w, h), r);
+  reflectances({Side::outside, -w, 0, !is_camera}, dot(w, h), r);
   const double share = layers_.straight ? 1 : shadowing(w, m, is_camera);
   for (int j = 0; j < count_; ++j) power[j] = (1 - r[j]) * share;
   travel = -m;
@@ -119,7 +121,7 @@ bool Stack::reflect_below(Vec3& travel, bool is_camera, Powers& power, Rng& rng)
   const Vec3 h = sample_normal(travel, rng), m = reflect(travel, h);
   if (m.z <= 0) return false;
   Powers r;
-  reflectances(Side::inside, dot(travel, h), r);
+  reflectances({Side::inside, -travel, 0}, dot(travel, h), r);
   const double share = shadowing(travel, m, is_camera);
   for (int j = 0; j < count_; ++j) power[j] *= r[j] * share;
   travel = -m;
@@ -140,8 +142,8 @@ template <class Stays>
 Stack::Turn Stack::turn(Place& at, Powers& power, double through, Rng& rng, Stays stays) const {
   const Vec3 h = stack_.facets.sample_facet(at.travel, rng);
   Powers r;
-  reflectances(at.side, -dot(at.travel, h), r);
-  Place mirrored{at.side, reflect(-at.travel, h), at.depth}, passed = at;
+  reflectances(at, -dot(at.travel, h), r);
+  Place mirrored{at.side, reflect(-at.travel, h), at.depth}, passed;
   const double stays_r = stays(mirrored);
   double stays_t = through;
   if (!layers_.straight) stays_t = pass(at, h, passed) ? stays(passed) : 0;
@@ -192,6 +194,7 @@ bool Stack::wander(Place at, Powers& power, Vec3& travel, Rng& rng, OnPassing on
 void Stack::follow_facets(const Vec3& wi, const Exit* exits, int count, Rng& rng, double* sums) const {
   const Microsurface& facets = stack_.facets;
   Place at = facets.first_facet(Side::outside, -wi, rng);
+  at.is_entry = true;
   Powers power;
   std::fill_n(power.begin(), count_, 1.0);
   const double least = kFaint * total(power);
@@ -272,7 +275,9 @@ bool Stack::enter(const Vec3& w, bool is_camera, Powers& power, Vec3& travel, Rn
   if (!stack_.multiple) return pass_once(w, is_camera, power, travel, rng);
   std::fill_n(power.begin(), count_, 1.0);
   travel = -w;
-  return wander(stack_.facets.first_facet(Side::outside, -w, rng), power, travel, rng, on_passing);
+  Place at = stack_.facets.first_facet(Side::outside, -w, rng);
+  at.is_entry = !is_camera;
+  return wander(at, power, travel, rng, on_passing);
 }
 
 void Stack::draw_exit(const Vec3& wo, Exit& exit, Rng& rng) const {
@@ -313,7 +318,7 @@ void Stack::mirror_towards(const Place& at, const Powers& power, const Vec3& y, 
   const double visible = visibility(stack_.facets, y, at.depth, origin);
   if (visible == 0 || h.z <= 0) return;
   Powers r;
-  reflectances(at.side, dot(y, h), r);
+  reflectances(at, dot(y, h), r);
   const double factor = stack_.facets.mirror_density(at.travel, h) * visible / std::abs(y.z) *
                         (at.side == Side::inside ? layers_.radiance_scale : 1) / kWalks;
   for (int j = 0; j < count_; ++j) sums[j] += power[j] * r[j] * (beyond ? beyond[j] : 1) * factor;
@@ -328,7 +333,7 @@ void Stack::pass_towards(const Place& at, const Powers& power, const Vec3& wo, d
   if (dot(at.travel, h) >= 0 || dot(wo, h) <= 0) return;
   const double visible = visibility(stack_.facets, wo, depth_from_other_side(at.depth), 0);
   Powers r;
-  reflectances(Side::inside, -dot(at.travel, h), r);
+  reflectances(at, -dot(at.travel, h), r);
   const double factor = stack_.facets.passing_density(at.travel, h, wo, ratio) * visible / (wo.z * kWalks);
   for (int j = 0; j < count_; ++j) sums[j] += power[j] * (1 - r[j]) * factor;
 }
@@ -507,11 +512,11 @@ void Stack::add_bidirectional(const Vec3& wi, const Vec3& wo, Rng& rng, double* 
   add_base(light, camera, kWalks * kWalks, sums);
 }
 
-// One facet, met from `side`: true if it mirrors. `power` is multiplied by what that turn weighs.
-bool Stack::choose_mirror(Side side, double cosine, Powers& power, double& chance, Rng& rng) const {
+// One facet: true if it mirrors. `power` is multiplied by what that turn weighs.
+bool Stack::choose_mirror(const Place& at, double cosine, Powers& power, double& chance, Rng& rng) const {
   Powers r;
-  reflectances(side, cosine, r);
-  const double mirrors = mean(r);
+  reflectances(at, cosine, r);
+  const double mirrors = mirror_chance(at, r);
   const bool is_mirrored = rng.uniform() < mirrors;
   chance = is_mirrored ? mirrors : 1 - mirrors;
   for (int j = 0; j < count_; ++j) power[j] *= (is_mirrored ? r[j] : 1 - r[j]) / chance;
@@ -526,8 +531,8 @@ void Stack::wander_freely(Place at, Powers& power, Outcome& out, Rng& rng) const
   for (out.facets = 1;; ++out.facets) {
     const Vec3 h = facets.sample_facet(at.travel, rng);
     out.facet_cosine = -dot(at.travel, h);
-    if (choose_mirror(at.side, out.facet_cosine, power, out.chance, rng)) {
-      at.travel = reflect(-at.travel, h);
+    if (choose_mirror(at, out.facet_cosine, power, out.chance, rng)) {
+      at = {at.side, reflect(-at.travel, h), at.depth};
     } else if (layers_.straight) {
       out.side = opposite(start);
       out.travel = unbent;
@@ -547,15 +552,17 @@ void Stack::wander_freely(Place at, Powers& power, Outcome& out, Rng& rng) const
 }
 
 // Light that travels along x, in the frame of `side`, meets the film there.
-Stack::Outcome Stack::meet_film(Side side, const Vec3& x, Powers& power, Rng& rng) const {
+Stack::Outcome Stack::meet_film(Side side, const Vec3& x, bool is_entry, Powers& power, Rng& rng) const {
   Outcome out;
   if (stack_.multiple) {
-    wander_freely(stack_.facets.first_facet(side, x, rng), power, out, rng);
+    Place at = stack_.facets.first_facet(side, x, rng);
+    at.is_entry = is_entry;
+    wander_freely(at, power, out, rng);
     return out;
   }
   const Vec3 w = -x, h = sample_normal(w, rng);
   out.facet_cosine = dot(w, h);
-  const bool is_mirrored = choose_mirror(side, out.facet_cosine, power, out.chance, rng);
+  const bool is_mirrored = choose_mirror({side, x, 0, is_entry}, out.facet_cosine, power, out.chance, rng);
   out.side = is_mirrored ? side : opposite(side);
   out.travel = w;
   if (is_mirrored)
@@ -596,13 +603,13 @@ Vec3 Stack::return_to_film(Vec3 travel, Powers& power, Rng& rng) const {
 
 StackSample Stack::sample(const Vec3& wo, Powers& power, Rng& rng) const {
   for (int j = 0; j < count_; ++j) power[j] = 1;
-  Outcome film = meet_film(Side::outside, -wo, power, rng);
+  Outcome film = meet_film(Side::outside, -wo, true, power, rng);
   StackSample result;
   result.is_first = film.side == Side::outside && film.facets == 1;
   result.facet_cosine = film.facet_cosine;
   result.weight = film.shadowing / film.chance;
   while (!film.is_lost && film.side == Side::inside)
-    film = meet_film(Side::inside, -return_to_film(-film.travel, power, rng), power, rng);
+    film = meet_film(Side::inside, -return_to_film(-film.travel, power, rng), false, power, rng);
   result.is_lost = film.is_lost;
   result.wi = film.travel;
   return result;

@@ -84,8 +84,8 @@ class Stack {
   };
 
   // Film.
-  void reflectances(Side side, double cosine, Powers& r) const;
-  double mean(const Powers& r) const;
+  void reflectances(const Place& at, double cosine, Powers& r) const;
+  double mirror_chance(const Place& at, const Powers& r) const;
   double total(const Powers& power) const;
   Vec3 sample_normal(const Vec3& w, Rng& rng) const;
   bool pass_once(const Vec3& w, bool is_camera, Powers& power, Vec3& travel, Rng& rng) const;
@@ -100,9 +100,9 @@ class Stack {
   void follow_facets(const Vec3& wi, const Exit* exits, int count, Rng& rng, double* sums) const;
   bool pass(const Place& at, const Vec3& h, Place& passed) const;
   double shadowing(const Vec3& from, const Vec3& to, bool is_camera) const;
-  bool choose_mirror(Side side, double cosine, Powers& power, double& chance, Rng& rng) const;
+  bool choose_mirror(const Place& at, double cosine, Powers& power, double& chance, Rng& rng) const;
   void wander_freely(Place at, Powers& power, Outcome& out, Rng& rng) const;
-  Outcome meet_film(Side side, const Vec3& x, Powers& power, Rng& rng) const;
+  Outcome meet_film(Side side, const Vec3& x, bool is_entry, Powers& power, Rng& rng) const;
 
   // Pigment and base.
   void attenuate(double length, Powers& power) const;

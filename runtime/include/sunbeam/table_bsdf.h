@@ -4,7 +4,8 @@
 // eval = first + rest of table.h, 1/sr, without the cosine and without the Dirac part.
 // sample mixes two techniques, chosen by their directional albedos: visible normals for the first surface
 // (for a smooth film: its mirror direction, a Dirac), and tabulated densities over cos(theta_i) for the rest.
-// pdf is the exact density of that mixture. Directions that visible normals send below the horizon are empty.
+// Neither the choice nor those densities depend on the azimuth of wo. pdf is the exact density of that
+// mixture. Directions that visible normals send below the horizon are empty.
 #pragma once
 
 #include <memory>
@@ -58,6 +59,12 @@ class TableBsdf final : public Bsdf {
   Rgb albedo(const Vec3& wo) const;
 
  private:
+  struct AzimuthNode {
+    double phi_i, phi_o;  // table coordinates
+    double weight;        // all add up to 1
+  };
+  std::vector<AzimuthNode> azimuths_around(const Vec3& wo) const;
+  double make_sampling_node(double cos_o);
   Rgb first_albedo(const Vec3& wo, int nodes) const;
   Rgb rest_albedo(const Vec3& wo, std::vector<double>* marginal) const;
   double first_chance(double cos_o) const;
@@ -71,7 +78,7 @@ class TableBsdf final : public Bsdf {
   NdArray remainder_, stderr_;  // over the four angles
   CosineCurve reflectance_, transmittance_;
 
-  // Sampling data over cos(theta_o), equally spaced nodes.
+  // Sampling data over cos(theta_o), equally spaced nodes; means over the azimuth of wo.
   CosineCurve first_chance_;
   std::vector<PiecewiseConstant> rest_marginals_;
 };

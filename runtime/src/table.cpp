@@ -113,10 +113,9 @@ Rgb RestFrame::encode(const Rgb& rest, double cos_i, double cos_o, const Rgb& t_
   const Terms t = terms(cos_i, cos_o, t_i, t_o);
   Rgb remainder;
   for (int c = 0; c < 3; ++c)
-    if (t.front[c] > 0)
-      remainder[c] = std::clamp((rest[c] / t.front[c] - t.first_visit[c]) / t.decay[c], -kLargestRemainder,
-                                kLargestRemainder);
-  return remainder;
+    if (t.front[c] > 0) remainder[c] = (rest[c] / t.front[c] - t.first_visit[c]) / t.decay[c];
+  if (decays_) return remainder;
+  return transform(remainder, [](double x) { return std::clamp(x, -kLargestRemainder, kLargestRemainder); });
 }
 
 }  // namespace sunbeam

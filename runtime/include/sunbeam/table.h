@@ -97,7 +97,9 @@ struct Table {
 // The remainder's frame at one parameter point, shared by the bake (encode) and the look-up (decode).
 class RestFrame {
  public:
-  // Larger remainders, of lobes too narrow for any table, are cut to it: a half float ends at 65504.
+  // Where the remainder does not decay it has lobes, of a peaked phase function or of nearly smooth facets at
+  // grazing, too high for a half float, which ends at 65504, and too narrow for any table. encode() cuts
+  // them.
   static constexpr double kLargestRemainder = 60000;
 
   // `first_visit` as in Table: empty for rgb3.

@@ -51,6 +51,7 @@ Rgb decay_of(const Rgb& start, const Rgb& value) {
 RestFrame::RestFrame(const Material& material, const NdArray& first_visit)
     : material_(material),
       scale_(material.radiance_scale()),
+      least_transmittance_(material.has_multiple_facets() ? kLeastOverMultipleFacets : 0),
       decays_(!material.scatters() && !material.has_multiple_facets()) {
   if (first_visit.empty()) return;
   constexpr int kSteps = 1024;  // linear to 1e-5 of a white base, as the array itself
@@ -75,8 +76,8 @@ RestFrame::Terms RestFrame::terms(double cos_i, double cos_o, const Rgb& t_i, co
 // A transmittance as a factor that the remainder can be divided by. A folded one may be negative.
 Rgb RestFrame::factor(const Rgb& transmittance) const {
   constexpr double kSmallestShare = 0.3;  // of the mean
-  double smallest = first_visit_.empty() ? 0 : kSmallestShare * mean(transmittance);
-  if (material_.has_multiple_facets()) smallest = std::max(smallest, kLeastOverMultipleFacets);
+  const double share = first_visit_.empty() ? 0 : kSmallestShare * mean(transmittance);
+  const double smallest = std::max(share, least_transmittance_);
   return transform(transmittance, [&](double t) { return std::max(t, smallest); });
 }
 

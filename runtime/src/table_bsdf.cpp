@@ -59,6 +59,7 @@ TableBsdf::TableBsdf(const Table& table, const Parameters& parameters, OutsideGr
   const auto point = Parameters::of(material_).values();
   remainder_ = table.remainder.slice(point);
   stderr_ = table.rest_stderr.slice(point);
+  has_azimuth_ = remainder_.axes()[1].size() > 1 || remainder_.axes()[3].size() > 1;
   const auto film_at = [&](double c) { return std::array{point[0], point[1], c}; };
   reflectance_ =
       sampled_curve(kCurveNodes, [&](double c) { return table.film_reflectance.interpolate(film_at(c)); });
@@ -90,17 +91,21 @@ Rgb TableBsdf::first(const Vec3& wo, const Vec3& wi) const {
   return ggx_.reflection(wo, wi, h) * reflectance_(dot(wo, h));
 }
 
+std::array<double, 4> TableBsdf::coordinates(const Vec3& wo, const Vec3& wi) const {
+  if (!has_azimuth_) return {wi.z, 0, wo.z, 0};
+  const AngleCoordinates c = to_coordinates(symmetry_, {wo, wi});
+  return {c.cos_i, c.phi_i, c.cos_o, c.phi_o};
+}
+
 Rgb TableBsdf::rest(const Vec3& wo, const Vec3& wi) const {
   if (wo.z <= 0 || wi.z <= 0) return {};
-  const AngleCoordinates c = to_coordinates(symmetry_, {wo, wi});
-  const Rgb remainder = remainder_.interpolate(std::array{c.cos_i, c.phi_i, c.cos_o, c.phi_o});
+  const Rgb remainder = remainder_.interpolate(coordinates(wo, wi));
   return frame_.decode(remainder, wi.z, wo.z, transmittance_(wi.z), transmittance_(wo.z));
 }
 
 Rgb TableBsdf::rest_stderr(const Vec3& wo, const Vec3& wi) const {
   if (wo.z <= 0 || wi.z <= 0) return {};
-  const AngleCoordinates c = to_coordinates(symmetry_, {wo, wi});
-  return stderr_.interpolate(std::array{c.cos_i, c.phi_i, c.cos_o, c.phi_o});
+  return stderr_.interpolate(coordinates(wo, wi));
 }
 
 // Int f_first cos dwi by midpoints in the unit square of visible normals, which turns it into a mean of R

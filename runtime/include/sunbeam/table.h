@@ -122,6 +122,7 @@ class RestFrame {
 
   Material material_;
   double scale_;
+  double least_transmittance_;
   bool decays_;
   std::vector<Rgb>
       first_visit_;  // F at even steps of x / (1 + x) from 0 to 1: no search, no root; empty for rgb3

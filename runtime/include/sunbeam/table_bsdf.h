@@ -8,6 +8,7 @@
 // mixture. Directions that visible normals send below the horizon are empty.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -63,6 +64,7 @@ class TableBsdf final : public Bsdf {
     double phi_i, phi_o;  // table coordinates
     double weight;        // all add up to 1
   };
+  std::array<double, 4> coordinates(const Vec3& wo, const Vec3& wi) const;
   std::vector<AzimuthNode> azimuths_around(const Vec3& wo) const;
   double make_sampling_node(double cos_o);
   Rgb first_albedo(const Vec3& wo, int nodes) const;
@@ -76,6 +78,7 @@ class TableBsdf final : public Bsdf {
   RestFrame frame_;
   Ggx ggx_;
   NdArray remainder_, stderr_;  // over the four angles
+  bool has_azimuth_;            // else they have one node each, and finding the azimuths would be in vain
   CosineCurve reflectance_, transmittance_;
 
   // Sampling data over cos(theta_o), equally spaced nodes; means over the azimuth of wo.

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "bake/live/pfmc.h"
+#include "sunbeam/core/error.h"
 #include "sunbeam/table_io.h"
 #include "tests/accuracy/support.h"
 #include "tests/support/quadrature.h"

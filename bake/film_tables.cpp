@@ -14,6 +14,7 @@ constexpr double kSmallestCosine = 1e-8;  // the node at 0 holds the limit from 
 constexpr std::size_t kPathNodes = 2048;
 constexpr double kLongestPath = 100;      // optical depths; F is constant beyond
 constexpr std::size_t kNormalNodes = 48;  // quadrature over visible normals, each way
+constexpr int kQuadrantAzimuths = 4;      // midpoints, of an anisotropic film
 
 Axis film_thickness_axis(const Recipe& recipe) {
   Axis axis = recipe.grid[0];
@@ -38,8 +39,18 @@ Axis film_ior_axis(const Recipe& recipe) {
   return axis;
 }
 
-// How much of the light along w (cosine of row i) meets facets of cosine j and gets through, film aside: the
-// mean transmittance of a rough film is this row times the film's transmittance at the cosines.
+// Directions at this cosine: one for an isotropic film, else some of a quadrant; the other three are its
+// mirror images.
+std::vector<Vec3> directions_at(double cosine, const Roughness& roughness) {
+  if (roughness.is_isotropic()) return {direction_from_cosine(cosine, 0)};
+  std::vector<Vec3> directions;
+  for (int a = 0; a < kQuadrantAzimuths; ++a)
+    directions.push_back(direction_from_cosine(cosine, kPi / 2 * (a + 0.5) / kQuadrantAzimuths));
+  return directions;
+}
+
+// How much of the light at cosine i, a mean over its azimuth, meets facets of cosine j and gets through, film
+// aside: the mean transmittance of a rough film is this row times the film's transmittance at the cosines.
 std::vector<double> crossing_weights(const Material& material, const Axis& cosines) {
   Material clear = material;  // a film without interfaces, bending like the real one, passes everything
   clear.film_thickness_nm = 0;
@@ -48,18 +59,20 @@ std::vector<double> crossing_weights(const Material& material, const Axis& cosin
   const std::size_t n = cosines.size();
   std::vector<double> weights(n * n);
   for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 w = direction_from_cosine(std::max(cosines.nodes[i], kSmallestCosine), 0);
-    for (std::size_t k = 0; k < kNormalNodes * kNormalNodes; ++k) {
-      const double u = (static_cast<double>(k % kNormalNodes) + 0.5) / kNormalNodes;
-      const double v = (static_cast<double>(k / kNormalNodes) + 0.5) / kNormalNodes;
-      const Vec3 h = ggx.sample_visible(w, {u, v});
-      const auto crossing = film.cross(w, {h, {Rgb(0), Rgb(1)}, 0});
-      if (!crossing) continue;
-      const Bracket at = cosines.locate(dot(w, h));
-      const double share = crossing->weight.r / (kNormalNodes * kNormalNodes);
-      weights[i * n + at.lower] += share * (1 - at.upper_weight);
-      weights[i * n + at.upper] += share * at.upper_weight;
-    }
+    const auto directions = directions_at(std::max(cosines.nodes[i], kSmallestCosine), material.roughness);
+    for (const Vec3& w : directions)
+      for (std::size_t k = 0; k < kNormalNodes * kNormalNodes; ++k) {
+        const double u = (static_cast<double>(k % kNormalNodes) + 0.5) / kNormalNodes;
+        const double v = (static_cast<double>(k / kNormalNodes) + 0.5) / kNormalNodes;
+        const Vec3 h = ggx.sample_visible(w, {u, v});
+        const auto crossing = film.cross(w, {h, {Rgb(0), Rgb(1)}, 0});
+        if (!crossing) continue;
+        const Bracket at = cosines.locate(dot(w, h));
+        const double share =
+            crossing->weight.r / static_cast<double>(kNormalNodes * kNormalNodes * directions.size());
+        weights[i * n + at.lower] += share * (1 - at.upper_weight);
+        weights[i * n + at.upper] += share * at.upper_weight;
+      }
   }
   return weights;
 }

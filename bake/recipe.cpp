@@ -170,6 +170,24 @@ void read_albedo(const ConfigTable& config, Spectrum& spectrum, Material& materi
   }
 }
 
+// As many as the material's rest needs: see recipe.h.
+int read_azimuths(const ConfigTable& config, const Material& material) {
+  constexpr const char* kAzimuths = "azimuths";
+  constexpr int kMost = 512;
+  const bool isotropic = material.roughness.is_isotropic();
+  const int azimuths = config.integer(kAzimuths, 1, kMost, material.is_plain() ? 1 : isotropic ? 9 : 8);
+  if (!isotropic && azimuths % 4 != 0)
+    config.fail(kAzimuths,
+                fmt::format("found {}; allowed with an anisotropic roughness: a multiple of 4 up to {}",
+                            azimuths, kMost));
+  if (!material.is_plain() && azimuths == 1)
+    config.fail(
+        kAzimuths,
+        fmt::format("found 1, but the rest of a material with {} has azimuth; allowed: 2 to {}",
+                    material.scatters() ? "scattering_per_nm > 0" : "microfacet \"multiple\"", kMost));
+  return azimuths;
+}
+
 }  // namespace
 
 Recipe parse_recipe(const std::string& text, const std::string& name,
@@ -185,7 +203,7 @@ Recipe parse_recipe(const std::string& text, const std::string& name,
 
   const ConfigTable table = config.table("table");
   recipe.table.angles = table.integer("angles", 2, 512, recipe.table.angles);
-  recipe.table.azimuths = table.integer("azimuths", 1, 512, recipe.table.azimuths);
+  recipe.table.azimuths = read_azimuths(table, recipe.material);
   recipe.table.precision = static_cast<Precision>(table.choice("precision", {"half", "float"}, 0));
   table.choice("encoding", {"dense"}, 0);
 

@@ -19,8 +19,10 @@ struct Recipe {
   std::vector<Axis> grid;  // [grid]: the three parameter axes in table order; one node if not swept
 
   struct {
-    int angles = 12;   // nodes over cos(theta), for wi and wo alike
-    int azimuths = 1;  // nodes over |dphi| in [0, pi]; the rest of an isotropic film has no azimuth
+    int angles = 12;  // nodes over cos(theta), for wi and wo alike
+    // Nodes over |dphi| in [0, pi]; 1 where the rest has no azimuth. Of an anisotropic film: nodes over phi_o
+    // in [0, 2 pi), a multiple of 4, and azimuths / 4 + 1 over phi_i in [0, pi/2].
+    int azimuths = 1;
     Precision precision = Precision::half_float;
     std::string encoding = "dense";
   } table;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <limits>
+#include <map>
 
 #include "bake/cell.h"
 #include "bake/film_tables.h"
@@ -19,14 +21,30 @@ constexpr int kFirstBatch = 64;  // estimates before the stop rule is asked; dou
 constexpr int kMostEstimates = 1 << 14;
 constexpr double kLowestCosine = 0.01;
 
+Symmetry symmetry_of(const Recipe& recipe) {
+  return recipe.material.roughness.is_isotropic() ? Symmetry::isotropic : Symmetry::anisotropic;
+}
+
+// `count` azimuths from 0, without the end that is the beginning again.
+std::vector<double> nodes_round(std::size_t count) {
+  auto nodes = spaced_nodes(0, 2 * kPi, count + 1);
+  nodes.pop_back();
+  return nodes;
+}
+
 std::vector<Axis> rest_axes(const Recipe& recipe) {
   std::vector<Axis> axes = recipe.grid;
   const auto cosines = spaced_nodes(kLowestCosine, 1, static_cast<std::size_t>(recipe.table.angles));
-  const auto azimuths = spaced_nodes(0, kPi, static_cast<std::size_t>(recipe.table.azimuths));
+  const auto azimuths = static_cast<std::size_t>(recipe.table.azimuths);
+  Axis phi_i{"phi_i", "rad", {0}}, phi_o{"phi_o", "rad", spaced_nodes(0, kPi, azimuths)};
+  if (symmetry_of(recipe) == Symmetry::anisotropic) {
+    phi_i.nodes = spaced_nodes(0, kPi / 2, azimuths / 4 + 1);
+    phi_o = {"phi_o", "rad", nodes_round(azimuths), 1, 2 * kPi};
+  }
   axes.push_back({"cos_theta_i", "1", cosines});
-  axes.push_back({"phi_i", "rad", {0}});
+  axes.push_back(phi_i);
   axes.push_back({"cos_theta_o", "1", cosines});
-  axes.push_back({"phi_o", "rad", azimuths});
+  axes.push_back(phi_o);
   return axes;
 }
 
@@ -65,29 +83,97 @@ Row bake_row(const Pfmc& model, Technique technique, const Vec3& wi, const std::
   }
 }
 
-// Averages (i, o) with (o, i): half the noise in variance, and reciprocity to the last bit.
-void average_reciprocal(std::vector<Row>& rows, std::size_t azimuths) {
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    for (std::size_t o = 0; o < i; ++o)
-      for (std::size_t a = 0; a < azimuths; ++a) {
-        const std::size_t io = o * azimuths + a, oi = i * azimuths + a;
-        const Rgb value = 0.5 * (rows[i].value[io] + rows[o].value[oi]);
-        const Rgb e1 = rows[i].standard_error[io], e2 = rows[o].standard_error[oi];
-        const Rgb error = 0.5 * transform(e1 * e1 + e2 * e2, [](double x) { return std::sqrt(x); });
-        rows[i].value[io] = rows[o].value[oi] = value;
-        rows[i].standard_error[io] = rows[o].standard_error[oi] = error;
+// Cells of one parameter node whose values are equal because the surface is its own mirror image, because
+// light may be reversed, or because a direction along z has no azimuth.
+class Orbits {
+ public:
+  explicit Orbits(const Recipe& recipe)
+      : symmetry_(symmetry_of(recipe)),
+        cosines_(static_cast<std::size_t>(recipe.table.angles)),
+        azimuths_(static_cast<std::size_t>(recipe.table.azimuths)) {
+    const std::size_t azimuths_i = symmetry_ == Symmetry::isotropic ? 1 : azimuths_ / 4 + 1;
+    std::map<std::size_t, Cells> by_key;
+    for (std::size_t i = 0; i < cosines_ * azimuths_i; ++i)
+      for (std::size_t o = 0; o < cosines_ * azimuths_; ++o)
+        by_key[key({i / azimuths_i, i % azimuths_i}, {o / azimuths_, o % azimuths_})].emplace_back(i, o);
+    for (auto& [key, cells] : by_key) orbits_.push_back(std::move(cells));
+  }
+
+  // Replaces the values of each orbit by their mean: less noise, and symmetries hold to the last bit.
+  void average(std::vector<Row>& rows) const {
+    for (const Cells& cells : orbits_) average(rows, cells);
+  }
+
+ private:
+  using Cells = std::vector<std::pair<std::size_t, std::size_t>>;  // (row, place in it), by row
+
+  struct End {
+    std::size_t cosine, azimuth;  // nodes; azimuths of an anisotropic table in steps from the x axis
+  };
+
+  std::size_t number(const End& i, const End& o) const {
+    return ((i.cosine * azimuths_ + i.azimuth) * cosines_ + o.cosine) * azimuths_ + o.azimuth;
+  }
+
+  // The least number of all cells in the orbit.
+  std::size_t key(End i, End o) const {
+    const std::size_t pole = cosines_ - 1;
+    if (symmetry_ == Symmetry::isotropic) {
+      if (i.cosine == pole || o.cosine == pole) o.azimuth = 0;
+      return std::min(number(i, o), number({o.cosine, 0}, {i.cosine, o.azimuth}));
+    }
+    const auto mirrored = [&](const End& end, bool x, bool y) {
+      if (end.cosine == pole) return End{pole, 0};
+      std::size_t azimuth = end.azimuth;
+      if (x) azimuth = azimuths_ + azimuths_ / 2 - azimuth;
+      if (y) azimuth = 2 * azimuths_ - azimuth;
+      return End{end.cosine, azimuth % azimuths_};
+    };
+    auto least = std::numeric_limits<std::size_t>::max();
+    for (const bool x : {false, true})
+      for (const bool y : {false, true}) {
+        const End a = mirrored(i, x, y), b = mirrored(o, x, y);
+        least = std::min({least, number(a, b), number(b, a)});
       }
-}
+    return least;
+  }
+
+  // Cells of a row share their walks, so their errors add up; those of different rows do not.
+  static void average(std::vector<Row>& rows, const Cells& cells) {
+    Rgb value, variance, row_error;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const auto [row, place] = cells[k];
+      value += rows[row].value[place];
+      row_error += rows[row].standard_error[place];
+      if (k + 1 < cells.size() && cells[k + 1].first == row) continue;
+      variance += row_error * row_error;
+      row_error = {};
+    }
+    const auto count = static_cast<double>(cells.size());
+    const Rgb error = transform(variance, [](double x) { return std::sqrt(x); });
+    for (const auto& [row, place] : cells) {
+      rows[row].value[place] = value / count;
+      rows[row].standard_error[place] = error / count;
+    }
+  }
+
+  Symmetry symmetry_;
+  std::size_t cosines_, azimuths_;
+  std::vector<Cells> orbits_;
+};
 
 class Sweep {
  public:
-  Sweep(const Recipe& recipe, const SweepSettings& settings) : recipe_(recipe), settings_(settings) {
+  Sweep(const Recipe& recipe, const SweepSettings& settings)
+      : recipe_(recipe), settings_(settings), orbits_(recipe) {
     table_.material = recipe.material;
+    table_.symmetry = symmetry_of(recipe);
     bake_film(recipe, table_);
     const auto axes = rest_axes(recipe);
     table_.remainder = NdArray("remainder", axes, recipe.table.precision);
     table_.rest_stderr = NdArray("rest_stderr", axes, recipe.table.precision);
-    for (const double c : axes[3].nodes) wi_.push_back(direction_from_cosine(c, 0));
+    for (const double c : axes[3].nodes)
+      for (const double phi : axes[4].nodes) wi_.push_back(direction_from_cosine(c, phi));
     for (const double c : axes[5].nodes)
       for (const double phi : axes[6].nodes) wo_.push_back(direction_from_cosine(c, phi));
     nodes_ = recipe.grid[0].size() * recipe.grid[1].size() * recipe.grid[2].size();
@@ -118,7 +204,7 @@ class Sweep {
                               recipe_.accuracy.noise, Rng(settings_.seed, node * wi_.size() + i)));
       walks_ += rows.back().estimates * model.walks_per_estimate();
     }
-    average_reciprocal(rows, table_.remainder.axes()[6].size());
+    orbits_.average(rows);
     store(node, parameters, material, rows);
   }
 
@@ -141,6 +227,7 @@ class Sweep {
 
   const Recipe& recipe_;
   const SweepSettings& settings_;
+  const Orbits orbits_;
   Table table_;
   std::vector<Vec3> wi_, wo_;
   std::size_t nodes_ = 0;

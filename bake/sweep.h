@@ -19,7 +19,7 @@ struct SweepSettings {
 // Throws Error if the table would be larger than a machine can be expected to hold.
 void require_reasonable_size(const Recipe& recipe);
 
-// The same recipe and seed give the same bits for every thread count: each (parameter node, theta_i) has its
+// The same recipe and seed give the same bits for every thread count: each (parameter node, wi) has its
 // own random stream and its own stop rule. info holds everything but the measured error.
 Table bake_table(const Recipe& recipe, const SweepSettings& settings);
 

@@ -6,7 +6,6 @@
 #include "bake/live/exact.h"
 #include "bake/live/pfmc.h"
 #include "bake/parallel_tasks.h"
-#include "bake/recipe.h"
 #include "sunbeam/table_bsdf.h"
 
 namespace sunbeam {
@@ -72,7 +71,8 @@ class PointCheck {
     point_.parameters = {draw(table.parameter_axis(0), rng_), draw(table.parameter_axis(1), rng_),
                          draw(table.parameter_axis(2), rng_)};
     point_.cos_i = lerp(rng_.uniform(), std::cos(89 * kPi / 180), 1);
-    wi_ = direction_from_cosine(point_.cos_i, 0);
+    if (table.symmetry == Symmetry::anisotropic) point_.phi_i = 2 * kPi * rng_.uniform();
+    wi_ = direction_from_cosine(point_.cos_i, point_.phi_i);
     bsdf_.emplace(table, point_.parameters, OutsideGrid::refuse);
     wavelengths_ = spectrum.wavelengths(bsdf_->material());
     model_.emplace(bsdf_->material(), wavelengths_);
@@ -178,7 +178,12 @@ Quantiles quantiles(const std::vector<VerifyPoint>& points, Member member) {
 
 }  // namespace
 
+Estimator default_truth(const Recipe& recipe) {
+  return recipe.material.scatters() ? recipe.accuracy.estimator : Estimator::pfmc;
+}
+
 VerifyReport verify(const Table& table, const VerifySettings& settings) {
+  estimator_for_eval(settings.truth, table.material);  // throws if it has none
   const Spectrum spectrum = parse_recipe(table.info.at("recipe"), "recipe of the table").spectrum;
   VerifyReport report;
   report.truth = name_of(settings.truth);

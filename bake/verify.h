@@ -1,7 +1,7 @@
 // A table against the live model at random held-out parameters: how far off it is, how much of that is noise.
 //
 // Point k draws its own parameters (uniform over each axis' physical range) and wi (uniform in cosine, theta
-// <= 89 degrees) from random stream k. Its error is
+// <= 89 degrees; for an anisotropic table also in azimuth) from random stream k. Its error is
 //     Int |f_table - f_live| cos_o dwo / max(Int |f_live| cos_o dwo, 0.002),   f = first (non-Dirac) + rest,
 // mean over channels of the folded colour, by importance sampling with the table's own density. The live
 // values are noisy, which biases an L1 error upwards; noise_floor is the same figure with the table replaced
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "bake/estimator.h"
+#include "bake/recipe.h"
 #include "sunbeam/table.h"
 
 namespace sunbeam {
@@ -31,7 +32,7 @@ struct VerifySettings {
 
 struct VerifyPoint {
   Parameters parameters;
-  double cos_i = 0;
+  double cos_i = 0, phi_i = 0;  // of wi
   double error = 0, rest_error = 0;
   double noise_floor = 0;
   double dirac_error = 0;  // |R_table - R|, largest channel
@@ -50,7 +51,12 @@ struct VerifyReport {
   std::string truth;  // the estimator the table was held against
 };
 
-// Throws Error if the recipe in the table cannot be read.
+// What a table of this recipe is held against unless told otherwise: walks, and where the pigment scatters
+// those of the recipe.
+Estimator default_truth(const Recipe& recipe);
+
+// Throws Error if the recipe in the table cannot be read, or naming the key if truth is exact and the
+// material has no exact evaluator.
 VerifyReport verify(const Table& table, const VerifySettings& settings);
 
 // True if median and p99 of the error are within the tolerances.

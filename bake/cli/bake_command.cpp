@@ -18,6 +18,7 @@ constexpr int kVerifyPoints = 250;
 void measure_error(const Recipe& recipe, int threads, Table& table) {
   VerifySettings settings;
   settings.points = kVerifyPoints;
+  settings.truth = default_truth(recipe);
   settings.threads = threads;
   settings.tolerance_median = recipe.accuracy.tolerance_median;
   settings.tolerance_p99 = recipe.accuracy.tolerance_p99;
@@ -39,8 +40,8 @@ int run_bake(const BakeOptions& options) {
 
   std::size_t nodes = 1;
   for (const Axis& axis : recipe.grid) nodes *= axis.size();
-  fmt::print(stderr, "{}: {} parameter nodes, {} x {} x {} angles, values by {}\n", options.recipe, nodes,
-             recipe.table.angles, recipe.table.angles, recipe.table.azimuths,
+  fmt::print(stderr, "{}: {} parameter nodes, {} x {} cosines, {} azimuths, values by {}\n", options.recipe,
+             nodes, recipe.table.angles, recipe.table.angles, recipe.table.azimuths,
              name_of(recipe.accuracy.estimator));
   SweepSettings settings;
   settings.seed = options.seed;

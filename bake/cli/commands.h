@@ -35,7 +35,7 @@ int run_eval(const EvalOptions& options);
 
 struct VerifyOptions {
   std::string table, json;
-  std::string truth = "pfmc";
+  std::string truth;  // empty: the default of the recipe
   int points = 1000;
   int threads = 0;
   std::uint64_t seed = 2024;

@@ -7,6 +7,7 @@
 #include "bake/cli/progress.h"
 #include "bake/recipe.h"
 #include "bake/verify.h"
+#include "sunbeam/core/error.h"
 #include "sunbeam/core/file.h"
 #include "sunbeam/table_vdb.h"
 
@@ -21,12 +22,13 @@ void print_worst(const VerifyReport& report) {
   std::partial_sort(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count), points.end(),
                     [](const auto& a, const auto& b) { return a.error > b.error; });
   fmt::print(
-      "worst points: film_thickness_nm  base_ior  absorption_per_nm  theta_i_deg     error  noise_floor\n");
+      "worst points: film_thickness_nm  base_ior  absorption_per_nm  theta_i_deg  phi_i_deg     error  "
+      "noise_floor\n");
   for (std::size_t k = 0; k < count; ++k) {
     const VerifyPoint& p = points[k];
-    fmt::print("              {:>17.2f} {:>9.4f} {:>18.4f} {:>12.2f} {:>9.5f} {:>12.5f}\n",
+    fmt::print("              {:>17.2f} {:>9.4f} {:>18.4f} {:>12.2f} {:>10.2f} {:>9.5f} {:>12.5f}\n",
                p.parameters.film_thickness_nm, p.parameters.base_ior, p.parameters.absorption_per_nm,
-               std::acos(p.cos_i) * 180 / kPi, p.error, p.noise_floor);
+               std::acos(p.cos_i) * 180 / kPi, p.phi_i * 180 / kPi, p.error, p.noise_floor);
   }
 }
 
@@ -36,6 +38,15 @@ std::string report_json(const VerifyReport& report) {
   json["points"] = report.points.size();
   json["truth"] = report.truth;
   return json.dump(2) + "\n";
+}
+
+Estimator truth_of(const VerifyOptions& options, const Recipe& recipe) {
+  if (options.truth.empty()) return default_truth(recipe);
+  try {
+    return estimator_for_eval(estimator_of(options.truth), recipe.material);
+  } catch (const Error& error) {
+    throw Error(options.table + ": " + error.what());
+  }
 }
 
 }  // namespace
@@ -48,7 +59,7 @@ int run_verify(const VerifyOptions& options) {
   settings.points = options.points;
   settings.seed = options.seed;
   settings.threads = options.threads;
-  settings.truth = estimator_of(options.truth);
+  settings.truth = truth_of(options, recipe);
   settings.tolerance_median = recipe.accuracy.tolerance_median;
   settings.tolerance_p99 = recipe.accuracy.tolerance_p99;
   settings.on_progress = Progress("verify", "points", options.points);

@@ -29,13 +29,10 @@ namespace {
 constexpr double kLargestDecay = 12;
 // Beyond the critical angle of a base thinner than the exterior nothing arrives; any finite frame will do.
 constexpr double kSmallestCosine = 1e-6;
-
-// A folded transmittance as a factor that the remainder can be divided by.
-Rgb kept_positive(const Rgb& transmittance) {
-  constexpr double kSmallestShare = 0.3;  // of the mean
-  const double smallest = kSmallestShare * mean(transmittance);
-  return transform(transmittance, [&](double t) { return std::max(t, smallest); });
-}
+// What multiple facets reflect must not be divided by next to nothing, and what passes the film should keep
+// the fringes of T in front: a film of index 1.56 in air, whatever its thickness, lets through more than this
+// at cosines above 0.2.
+constexpr double kLeastOverMultipleFacets = 0.25;
 
 // How far F has fallen from `start`, per channel. A channel that starts or ends near 0, or beyond, while
 // others have light stays within a factor of 10 of their mean, so that the remainder stays bounded.
@@ -52,7 +49,10 @@ Rgb decay_of(const Rgb& start, const Rgb& value) {
 }  // namespace
 
 RestFrame::RestFrame(const Material& material, const NdArray& first_visit)
-    : material_(material), scale_(material.radiance_scale()) {
+    : material_(material),
+      scale_(material.radiance_scale()),
+      least_transmittance_(material.has_multiple_facets() ? kLeastOverMultipleFacets : 0),
+      decays_(!material.scatters() && !material.has_multiple_facets()) {
   if (first_visit.empty()) return;
   constexpr int kSteps = 1024;  // linear to 1e-5 of a white base, as the array itself
   for (int i = 0; i < kSteps; ++i) {
@@ -65,9 +65,20 @@ RestFrame::RestFrame(const Material& material, const NdArray& first_visit)
 RestFrame::Terms RestFrame::terms(double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const {
   const double m_i = std::max(material_.cosine_below(cos_i), kSmallestCosine);
   const double m_o = std::max(material_.cosine_below(cos_o), kSmallestCosine);
-  if (!first_visit_.empty()) return folded_terms(m_i, m_o, t_i, t_o);
-  return {scale_ * t_i * t_o, material_.albedo * (kInvPi * std::exp(material_.absorption_exponent(m_i, m_o))),
-          Rgb(std::exp(-std::min(material_.optical_depth() * (1 / m_i + 1 / m_o), kLargestDecay)))};
+  Terms t = first_visit_.empty() ? rgb3_terms(m_i, m_o) : folded_terms(m_i, m_o);
+  t.front = scale_ * factor(t_i) * factor(t_o);
+  if (decays_) return t;
+  t.first_visit *= std::exp(-material_.scattering_depth() * (1 / m_i + 1 / m_o));
+  t.decay = Rgb(1);
+  return t;
+}
+
+// A transmittance as a factor that the remainder can be divided by. A folded one may be negative.
+Rgb RestFrame::factor(const Rgb& transmittance) const {
+  constexpr double kSmallestShare = 0.3;  // of the mean
+  const double share = first_visit_.empty() ? 0 : kSmallestShare * mean(transmittance);
+  const double smallest = std::max(share, least_transmittance_);
+  return transform(transmittance, [&](double t) { return std::max(t, smallest); });
 }
 
 Rgb RestFrame::first_visit(double optical_path) const {
@@ -77,13 +88,18 @@ Rgb RestFrame::first_visit(double optical_path) const {
   return (1 - t) * first_visit_[lower] + t * first_visit_[lower + 1];
 }
 
-RestFrame::Terms RestFrame::folded_terms(double m_i, double m_o, const Rgb& t_i, const Rgb& t_o) const {
+RestFrame::Terms RestFrame::rgb3_terms(double m_i, double m_o) const {
+  return {{},
+          material_.albedo * (kInvPi * std::exp(material_.absorption_exponent(m_i, m_o))),
+          Rgb(std::exp(-std::min(material_.optical_depth() * (1 / m_i + 1 / m_o), kLargestDecay)))};
+}
+
+RestFrame::Terms RestFrame::folded_terms(double m_i, double m_o) const {
   const Rgb one_visit = first_visit(-material_.absorption_exponent(m_i, m_o));
   const Rgb at_sum = material_.absorption_path == AbsorptionPath::sum
                          ? one_visit
                          : first_visit(material_.optical_depth() * (1 / m_i + 1 / m_o));
-  return {scale_ * kept_positive(t_i) * kept_positive(t_o), kInvPi * one_visit,
-          decay_of(first_visit_.front(), at_sum)};
+  return {{}, kInvPi * one_visit, decay_of(first_visit_.front(), at_sum)};
 }
 
 Rgb RestFrame::decode(const Rgb& remainder, double cos_i, double cos_o, const Rgb& t_i,
@@ -99,7 +115,8 @@ Rgb RestFrame::encode(const Rgb& rest, double cos_i, double cos_o, const Rgb& t_
   Rgb remainder;
   for (int c = 0; c < 3; ++c)
     if (t.front[c] > 0) remainder[c] = (rest[c] / t.front[c] - t.first_visit[c]) / t.decay[c];
-  return remainder;
+  if (decays_) return remainder;
+  return transform(remainder, [](double x) { return std::clamp(x, -kLargestRemainder, kLargestRemainder); });
 }
 
 }  // namespace sunbeam

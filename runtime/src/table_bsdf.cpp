@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kCurveNodes = 129;
 constexpr std::size_t kSamplingNodes = 33;  // over cos(theta_o)
 constexpr std::size_t kMarginalBins = 32;   // over cos(theta_i)
-constexpr std::size_t kAzimuthNodes = 16;   // quadrature, only where the table has azimuth
+constexpr int kViewerAzimuths = 4;          // of wo in a quadrant, which sampling data are averaged over
 constexpr int kNormalNodes = 96;            // quadrature over visible normals, each way, for an albedo
 constexpr int kSamplingNormalNodes = 16;    // the same for the chance of sampling the first surface
 constexpr double kSmallestCosine = 1e-4;    // sampling data near grazing are taken here
@@ -26,6 +26,19 @@ Parameters checked(const Table& table, const Parameters& parameters, OutsideGrid
     values[k] = inside;
   }
   return {values[0], values[1], values[2]};
+}
+
+// Shares of the interval between an axis' ends that belong to its nodes, for a function linear between them.
+std::vector<double> trapezoid(const Axis& axis) {
+  const std::size_t n = axis.size();
+  if (n == 1) return {1};
+  std::vector<double> weights(n);
+  for (std::size_t k = 0; k + 1 < n; ++k) {
+    const double half = (axis.nodes[k + 1] - axis.nodes[k]) / (2 * (axis.high() - axis.low()));
+    weights[k] += half;
+    weights[k + 1] += half;
+  }
+  return weights;
 }
 
 template <class F>
@@ -46,21 +59,30 @@ TableBsdf::TableBsdf(const Table& table, const Parameters& parameters, OutsideGr
   const auto point = Parameters::of(material_).values();
   remainder_ = table.remainder.slice(point);
   stderr_ = table.rest_stderr.slice(point);
+  has_azimuth_ = remainder_.axes()[1].size() > 1 || remainder_.axes()[3].size() > 1;
   const auto film_at = [&](double c) { return std::array{point[0], point[1], c}; };
   reflectance_ =
       sampled_curve(kCurveNodes, [&](double c) { return table.film_reflectance.interpolate(film_at(c)); });
   transmittance_ = sampled_curve(kCurveNodes, [&](double c) { return table.transmittance(film_at(c)); });
 
-  rest_marginals_.resize(kSamplingNodes);
+  first_chance_ = sampled_curve(kSamplingNodes, [&](double c) { return Rgb(make_sampling_node(c)); });
+}
+
+// Appends the marginal of the rest for viewers at this cosine and returns the chance of the first surface;
+// both are means over the viewer's azimuth.
+double TableBsdf::make_sampling_node(double cos_o) {
+  const int azimuths = symmetry_ == Symmetry::anisotropic ? kViewerAzimuths : 1;
   std::vector<double> marginal(kMarginalBins);
-  std::size_t node = 0;
-  first_chance_ = sampled_curve(kSamplingNodes, [&](double c) {
-    const Vec3 wo = direction_from_cosine(std::max(c, kSmallestCosine), 0);
-    const double rest = std::max(0.0, mean(rest_albedo(wo, &marginal)));
-    const double first = std::max(0.0, mean(first_albedo(wo, kSamplingNormalNodes)));
-    rest_marginals_[node++] = PiecewiseConstant(marginal);
-    return Rgb(first + rest > 0 ? first / (first + rest) : 0.5);
-  });
+  Rgb rest, first;
+  for (int a = 0; a < azimuths; ++a) {
+    const double phi = azimuths == 1 ? 0 : kPi / 2 * (a + 0.5) / azimuths;
+    const Vec3 wo = direction_from_cosine(std::max(cos_o, kSmallestCosine), phi);
+    rest += rest_albedo(wo, &marginal) / azimuths;
+    first += first_albedo(wo, kSamplingNormalNodes) / azimuths;
+  }
+  rest_marginals_.emplace_back(marginal);
+  const double of_rest = std::max(0.0, mean(rest)), of_first = std::max(0.0, mean(first));
+  return of_first + of_rest > 0 ? of_first / (of_first + of_rest) : 0.5;
 }
 
 Rgb TableBsdf::first(const Vec3& wo, const Vec3& wi) const {
@@ -69,17 +91,21 @@ Rgb TableBsdf::first(const Vec3& wo, const Vec3& wi) const {
   return ggx_.reflection(wo, wi, h) * reflectance_(dot(wo, h));
 }
 
+std::array<double, 4> TableBsdf::coordinates(const Vec3& wo, const Vec3& wi) const {
+  if (!has_azimuth_) return {wi.z, 0, wo.z, 0};
+  const AngleCoordinates c = to_coordinates(symmetry_, {wo, wi});
+  return {c.cos_i, c.phi_i, c.cos_o, c.phi_o};
+}
+
 Rgb TableBsdf::rest(const Vec3& wo, const Vec3& wi) const {
   if (wo.z <= 0 || wi.z <= 0) return {};
-  const AngleCoordinates c = to_coordinates(symmetry_, {wo, wi});
-  const Rgb remainder = remainder_.interpolate(std::array{c.cos_i, c.phi_i, c.cos_o, c.phi_o});
+  const Rgb remainder = remainder_.interpolate(coordinates(wo, wi));
   return frame_.decode(remainder, wi.z, wo.z, transmittance_(wi.z), transmittance_(wo.z));
 }
 
 Rgb TableBsdf::rest_stderr(const Vec3& wo, const Vec3& wi) const {
   if (wo.z <= 0 || wi.z <= 0) return {};
-  const AngleCoordinates c = to_coordinates(symmetry_, {wo, wi});
-  return stderr_.interpolate(std::array{c.cos_i, c.phi_i, c.cos_o, c.phi_o});
+  return stderr_.interpolate(coordinates(wo, wi));
 }
 
 // Int f_first cos dwi by midpoints in the unit square of visible normals, which turns it into a mean of R
@@ -101,28 +127,47 @@ Rgb TableBsdf::first_albedo(const Vec3& wo, int nodes) const {
   return sum / (nodes * nodes);
 }
 
-// Int f_rest cos dwi by four-point Gauss-Legendre in each bin of cos(theta_i); the bins' mean values are the
-// sampling density over that cosine.
+// The table is linear between azimuths, so that the trapezoids of its nodes are exact. Those of an isotropic
+// table are azimuths of wi from wo; those of an anisotropic one are of a quadrant, and wo mirrored stands for
+// wi in the other three.
+std::vector<TableBsdf::AzimuthNode> TableBsdf::azimuths_around(const Vec3& wo) const {
+  const bool isotropic = symmetry_ == Symmetry::isotropic;
+  const Axis& axis = remainder_.axes()[isotropic ? 3 : 1];
+  const auto weights = trapezoid(axis);
+  std::vector<AzimuthNode> result;
+  for (std::size_t k = 0; k < axis.size(); ++k) {
+    if (isotropic) {
+      result.push_back({0, axis.nodes[k], weights[k]});
+      continue;
+    }
+    for (const double x : {wo.x, -wo.x})
+      for (const double y : {wo.y, -wo.y})
+        result.push_back({axis.nodes[k], azimuth({x, y, wo.z}), weights[k] / 4});
+  }
+  return result;
+}
+
+// Int f_rest cos dwi by four-point Gauss-Legendre in each bin of cos(theta_i); the bins' mean values, which
+// are added to `marginal`, are the sampling density over that cosine.
 Rgb TableBsdf::rest_albedo(const Vec3& wo, std::vector<double>* marginal) const {
   constexpr double kNode[] = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
   constexpr double kWeight[] = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
                                 0.1739274225687269};
-  const auto& axes = remainder_.axes();
-  const bool has_azimuth = axes[1].size() > 1 || axes[3].size() > 1;
-  const std::size_t azimuths = has_azimuth ? kAzimuthNodes : 1;
+  if (wo.z <= 0) return {};
+  const auto azimuths = azimuths_around(wo);
+  const Rgb t_o = transmittance_(wo.z);
   Rgb total;
   for (std::size_t bin = 0; bin < kMarginalBins; ++bin) {
     Rgb in_bin;
     for (std::size_t g = 0; g < 4; ++g) {
       const double cos_i = (static_cast<double>(bin) + kNode[g]) / kMarginalBins;
-      Rgb mean_value;
-      for (std::size_t a = 0; a < azimuths; ++a) {
-        const double phi = 2 * kPi * (static_cast<double>(a) + 0.5) / static_cast<double>(azimuths);
-        mean_value += rest(wo, direction_from_cosine(cos_i, phi)) / static_cast<double>(azimuths);
-      }
+      Rgb remainder;  // its mean over the azimuth of wi
+      for (const AzimuthNode& a : azimuths)
+        remainder += a.weight * remainder_.interpolate(std::array{cos_i, a.phi_i, wo.z, a.phi_o});
+      const Rgb mean_value = frame_.decode(remainder, cos_i, wo.z, transmittance_(cos_i), t_o);
       in_bin += mean_value * (kWeight[g] * cos_i * 2 * kPi);
     }
-    if (marginal) (*marginal)[bin] = std::max(0.0, mean(in_bin));
+    if (marginal) (*marginal)[bin] += std::max(0.0, mean(in_bin));
     total += in_bin / kMarginalBins;
   }
   return total;

@@ -16,6 +16,10 @@ constexpr std::array<const char*, 7> kRestAxes = {
 constexpr std::array<const char*, 8> kRequiredInfo = {"recipe",    "recipe_hash", "seed",         "samples",
                                                       "estimator", "spectrum",    "tool_version", "encoding"};
 
+std::string name_of(Symmetry symmetry) {
+  return symmetry == Symmetry::isotropic ? "isotropic" : "anisotropic";
+}
+
 // Hash over everything a file holds, so that damage shows.
 std::string parts_hash(const TableParts& parts) {
   std::string digest;
@@ -74,6 +78,42 @@ void check_axis_range(const Axis& axis, double low, double high) {
     throw Error("axis '" + axis.name + "' leaves " + to_text(low) + " to " + to_text(high));
 }
 
+void check_period(const Axis& axis, double period) {
+  if (axis.period != period)
+    throw Error("axis '" + axis.name + "' has period " + to_text(axis.period) + "; expected " +
+                to_text(period));
+}
+
+// Look-ups at azimuths beyond the nodes would be clamped, hence the ends.
+void check_ends(const Axis& axis, double low, double high) {
+  if (axis.nodes.front() != low || axis.nodes.back() != high)
+    throw Error("axis '" + axis.name + "' runs from " + to_text(axis.nodes.front()) + " to " +
+                to_text(axis.nodes.back()) + "; expected " + to_text(low) + " to " + to_text(high));
+}
+
+void check_azimuths(Symmetry symmetry, const Axis& phi_i, const Axis& phi_o) {
+  check_period(phi_i, 0);
+  if (symmetry == Symmetry::isotropic) {
+    if (phi_i.size() != 1)
+      throw Error("axis 'phi_i' has " + std::to_string(phi_i.size()) + " nodes; an isotropic table has 1");
+    check_period(phi_o, 0);
+    check_axis_range(phi_o, 0, kPi);
+    if (phi_o.size() > 1) check_ends(phi_o, 0, kPi);
+  } else {
+    check_ends(phi_i, 0, kPi / 2);
+    check_period(phi_o, 2 * kPi);
+    check_axis_range(phi_o, 0, 2 * kPi);
+  }
+}
+
+void check_symmetry(const Table& table) {
+  const bool isotropic = table.material.roughness.is_isotropic();
+  if (isotropic == (table.symmetry == Symmetry::isotropic)) return;
+  throw Error("symmetry is " + name_of(table.symmetry) + " but material.roughness is " +
+              to_string(table.material.roughness) + "; expected symmetry " +
+              name_of(isotropic ? Symmetry::isotropic : Symmetry::anisotropic));
+}
+
 void check_ranges(const Table& table) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Interval allowed = allowed_interval(kParameterNames[k]);
@@ -81,9 +121,7 @@ void check_ranges(const Table& table) {
   }
   const auto& axes = table.remainder.axes();
   for (const std::size_t k : {3u, 5u}) check_axis_range(axes[k], 1e-6, 1);
-  for (const std::size_t k : {4u, 6u}) check_axis_range(axes[k], 0, 2 * kPi);
-  if (table.symmetry == Symmetry::isotropic && axes[4].size() != 1)
-    throw Error("axis 'phi_i' has " + std::to_string(axes[4].size()) + " nodes; an isotropic table has 1");
+  check_azimuths(table.symmetry, axes[4], axes[6]);
   check_axis_range(table.film_reflectance.axes()[2], 0, 1);
   if (table.rest_stderr.axes() != axes) throw Error("array 'rest_stderr' has other axes than 'remainder'");
   if (!table.film_transmittance.empty() && table.film_transmittance.axes() != table.film_reflectance.axes())
@@ -120,6 +158,7 @@ Table build(const TableParts& parts) {
   if (symmetry != "isotropic" && symmetry != "anisotropic")
     throw Error("symmetry is '" + symmetry + "'; allowed: isotropic, anisotropic");
   table.symmetry = symmetry == "isotropic" ? Symmetry::isotropic : Symmetry::anisotropic;
+  check_symmetry(table);
   table.film_reflectance = checked_array(parts, "film_reflectance", kFilmAxes);
   if (!table.material.is_smooth())
     table.film_transmittance = checked_array(parts, "film_transmittance", kFilmAxes);
@@ -182,7 +221,7 @@ TableParts to_parts(const Table& table) {
   TableParts parts;
   parts.attributes = table.info;
   parts.attributes["schema_version"] = std::to_string(kTableSchemaVersion);
-  parts.attributes["symmetry"] = table.symmetry == Symmetry::isotropic ? "isotropic" : "anisotropic";
+  parts.attributes["symmetry"] = name_of(table.symmetry);
   for (const auto& key : material_keys()) parts.attributes["material." + key] = get_text(table.material, key);
   parts.arrays = {table.film_reflectance, table.remainder, table.rest_stderr};
   for (const NdArray* array : {&table.film_transmittance, &table.first_visit})

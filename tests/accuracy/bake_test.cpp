@@ -95,6 +95,84 @@ TEST(Bake, AzimuthsOfAnIsotropicFilmAgree) {
   }
 }
 
+Recipe anisotropic() {
+  test::SmallRecipe recipe = gridded();
+  recipe.grid = "absorption_per_nm = [0.1, 0.2]";
+  return parse_recipe(recipe.text(), "anisotropic", {"material.roughness=[0.1, 0.4]", "table.angles=4"});
+}
+
+Table bake_anisotropic(int threads) {
+  return bake_table(anisotropic(), {.seed = 1, .threads = threads, .on_progress = {}});
+}
+
+TEST(Bake, AzimuthsByMaterial) {
+  const auto azimuths = [](const std::string& material) {
+    return parse_recipe("[material]\n" + material, "r").table.azimuths;
+  };
+  EXPECT_EQ(azimuths(""), 1);
+  EXPECT_EQ(azimuths("roughness = [0.2, 0.2]"), 1);
+  EXPECT_EQ(azimuths("microfacet = \"multiple\"\nroughness = 0"), 1);
+  EXPECT_EQ(azimuths("microfacet = \"multiple\""), 9);
+  EXPECT_EQ(azimuths("scattering_per_nm = 0.5"), 9);
+  EXPECT_EQ(azimuths("scattering_per_nm = 0.5\nroughness = [0.1, 0.2]"), 8);
+}
+
+TEST(Bake, AnisotropicAxes) {
+  const Table table = bake_anisotropic(0);
+  EXPECT_EQ(table.symmetry, Symmetry::anisotropic);
+  const Axis &phi_i = table.remainder.axes()[4], &phi_o = table.remainder.axes()[6];
+  EXPECT_EQ(phi_i.nodes, (std::vector{0.0, kPi / 4, kPi / 2}));
+  EXPECT_EQ(phi_i.period, 0);
+  ASSERT_EQ(phi_o.size(), 8u);
+  EXPECT_EQ(phi_o.nodes[1], kPi / 4);
+  EXPECT_EQ(phi_o.period, 2 * kPi);
+  EXPECT_TRUE(table == bake_anisotropic(1));
+  EXPECT_TRUE(parse_table_exr(table_exr_bytes(table), "t") == table);
+}
+
+// Exchanged, mirrored in x or y, or turned about a direction along z: what is stored is equal to the last
+// bit.
+TEST(Bake, SymmetriesOfStoredValues) {
+  const Table table = bake_anisotropic(0);
+  const std::size_t cosines = 4, round = 8, quadrant = 3, node = table.remainder.stride(2);
+  // Any azimuths, in steps from x: those of the cell, whose wi is in the first quadrant.
+  const auto cell = [&](std::size_t i, std::size_t phi_i, std::size_t o, std::size_t phi_o) {
+    if (phi_i > round / 2) phi_i = round - phi_i, phi_o = (round - phi_o) % round;
+    if (phi_i > round / 4) phi_i = round / 2 - phi_i, phi_o = (round + round / 2 - phi_o) % round;
+    return node + ((i * quadrant + phi_i) * cosines + o) * round + phi_o;
+  };
+  int different = 0;
+  for (std::size_t i = 0; i < cosines; ++i)
+    for (std::size_t phi_i = 0; phi_i < quadrant; ++phi_i)
+      for (std::size_t o = 0; o < cosines; ++o)
+        for (std::size_t phi_o = 0; phi_o < round; ++phi_o) {
+          const std::size_t here = cell(i, phi_i, o, phi_o);
+          std::vector<std::size_t> equal = {cell(o, phi_o, i, phi_i)};
+          if (phi_i == 0) equal.push_back(cell(i, 0, o, (round - phi_o) % round));
+          if (phi_i == round / 4) equal.push_back(cell(i, phi_i, o, (round + round / 2 - phi_o) % round));
+          if (i == cosines - 1) equal.push_back(cell(i, 0, o, phi_o));
+          if (o == cosines - 1) equal.push_back(cell(i, phi_i, o, 0));
+          for (const std::size_t there : equal) {
+            ASSERT_EQ(table.remainder.get(here), table.remainder.get(there)) << i << phi_i << o << phi_o;
+            ASSERT_EQ(table.rest_stderr.get(here), table.rest_stderr.get(there));
+          }
+          different +=
+              i == 0 && o == 0 && !(table.remainder.get(here) == table.remainder.get(cell(0, 0, 0, 0)));
+        }
+  EXPECT_GT(different, 0);
+}
+
+// |dphi| means nothing where a direction is along z.
+TEST(Bake, AzimuthsOfAnIsotropicFilmAreOneAlongZ) {
+  const Table table = bake_table(parse_recipe(gridded().text(), "azimuths", {"table.azimuths=3"}),
+                                 {.seed = 1, .threads = 0, .on_progress = {}});
+  for (std::size_t c = 0; c < 6; ++c)
+    for (std::size_t a = 1; a < 3; ++a) {
+      EXPECT_EQ(table.remainder.get((5 * 6 + c) * 3 + a), table.remainder.get((5 * 6 + c) * 3));
+      EXPECT_EQ(table.remainder.get((c * 6 + 5) * 3 + a), table.remainder.get((5 * 6 + c) * 3));
+    }
+}
+
 TEST(Bake, ReportsProgress) {
   std::vector<double> fractions;
   bake_table(gridded().recipe(),

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "bake/live/pfmc.h"
+#include "sunbeam/core/error.h"
 #include "sunbeam/table_io.h"
 #include "tests/accuracy/support.h"
 #include "tests/support/quadrature.h"
@@ -190,6 +191,28 @@ TEST(Verify, QuantilesAreOfThePoints) {
   EXPECT_EQ(report.error.p95, errors[37]);     // 38 of 40
   EXPECT_EQ(report.error.p99, errors[39]);
   EXPECT_EQ(report.error.max, errors[39]);
+}
+
+// Quadrature knows no anisotropic film, scattering pigment or multiple facets.
+TEST(Verify, TheExactTruthNeedsAPlainMaterial) {
+  Table table = clear_table();
+  VerifySettings exact = settings(2, 0.1);
+  exact.truth = Estimator::exact;
+  EXPECT_NO_THROW(verify(table, exact));
+  table.material.roughness = 0.1;
+  table.material.microfacet = Microfacet::multiple;
+  EXPECT_THAT([&] { verify(table, exact); },
+              ::testing::ThrowsMessage<Error>(::testing::HasSubstr("key 'microfacet': found multiple")));
+}
+
+TEST(Verify, DefaultTruth) {
+  const auto truth = [](const std::string& material) {
+    return default_truth(
+        parse_recipe("[material]\n" + material + "\n[accuracy]\nestimator = \"bidirectional\"", "r"));
+  };
+  EXPECT_EQ(truth(""), Estimator::pfmc);
+  EXPECT_EQ(truth("roughness = [0.1, 0.2]"), Estimator::pfmc);
+  EXPECT_EQ(truth("scattering_per_nm = 1"), Estimator::bidirectional);
 }
 
 TEST(Verify, FigureNames) {

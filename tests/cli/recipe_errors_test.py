@@ -85,6 +85,18 @@ class RecipeErrors(support.CliTest):
                    "allowed: sum")
         self.check("material", "scattering_per_nm", "900", "optical thickness", "up to 100")
 
+    def test_azimuths_that_the_material_does_not_allow(self):
+        for material, value, needle in (
+            ("roughness = [0.1, 0.3]", 6, "a multiple of 4 up to 512"),
+            ("roughness = [0.1, 0.3]", 1, "a multiple of 4 up to 512"),
+            ("scattering_per_nm = 0.5", 1, "scattering_per_nm > 0 has azimuth; allowed: 2 to 512"),
+            ('microfacet = "multiple"', 1, 'microfacet "multiple" has azimuth; allowed: 2 to 512'),
+        ):
+            name = self.write("bad.toml", f"[material]\n{material}\n[table]\nazimuths = {value}\n")
+            with self.subTest(f"{material}, {value}"):
+                self.refuse("bake", name, "-o", "out.exr",
+                            naming=["bad.toml:4: ", "'table.azimuths'", f"found {value}", needle])
+
     def test_full_spectrum_keys_need_mode_full(self):
         for key, value in (("illuminant", '"D65"'), ("color_space", '"acescg"')):
             self.check("spectrum", key, value, "rgb3", 'allowed with "full" only')

@@ -61,6 +61,12 @@ class Verify(support.CliTest):
         # The same points and directions: the two differ by the noise of the walks alone.
         self.assertLessEqual(abs(exact["error_median"] - by_walks["error_median"]), by_walks["noise_floor_p99"])
 
+    def test_no_exact_truth_for_a_material_that_is_not_plain(self):
+        self.succeed("bake", "tiny.toml", "-o", "brushed.exr", *support.BLACK_BASE,
+                     "--set", "material.roughness=[0.1, 0.3]")
+        self.refuse("verify", "brushed.exr", "--truth", "exact",
+                    naming=["brushed.exr: ", "'roughness'", "found 0.1;0.3", "isotropic"])
+
     def test_stdout_holds_the_same_figures(self):
         report, result = self.report("good.exr", *POINTS)
         for key in REQUIRED_KEYS:

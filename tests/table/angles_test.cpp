@@ -17,13 +17,36 @@ Vec3 turned(const Vec3& w, double angle) {
   return {w.x * std::cos(angle) - w.y * std::sin(angle), w.x * std::sin(angle) + w.y * std::cos(angle), w.z};
 }
 
-TEST(Angles, AnisotropicRoundTripGivesTheSameDirections) {
+Vec3 mirrored(const Vec3& w, bool x, bool y) { return {x ? -w.x : w.x, y ? -w.y : w.y, w.z}; }
+
+// The round trip gives the mirror image whose wi lies in the first quadrant, the pair itself if it does so.
+TEST(Angles, AnisotropicRoundTripGivesThePairMirrored) {
   Rng rng(1, 0);
   for (int k = 0; k < 1000; ++k) {
     const DirectionPair pair{random_direction(rng), random_direction(rng)};
     const DirectionPair back = to_directions(to_coordinates(Symmetry::anisotropic, pair));
-    expect_near(back.wi, pair.wi);
-    expect_near(back.wo, pair.wo);
+    expect_near(back.wi, mirrored(pair.wi, pair.wi.x < 0, pair.wi.y < 0));
+    expect_near(back.wo, mirrored(pair.wo, pair.wi.x < 0, pair.wi.y < 0));
+  }
+}
+
+// Mirror images in x and y, half turns among them, have one set of coordinates to the last bit.
+TEST(Angles, AnisotropicCoordinatesOfMirrorImages) {
+  Rng rng(7, 0);
+  for (int k = 0; k < 1000; ++k) {
+    const DirectionPair pair{random_direction(rng), random_direction(rng)};
+    const AngleCoordinates c = to_coordinates(Symmetry::anisotropic, pair);
+    for (const bool x : {false, true})
+      for (const bool y : {false, true}) {
+        const DirectionPair image{mirrored(pair.wo, x, y), mirrored(pair.wi, x, y)};
+        const AngleCoordinates same = to_coordinates(Symmetry::anisotropic, image);
+        EXPECT_EQ(same.phi_i, c.phi_i);
+        EXPECT_EQ(same.phi_o, c.phi_o);
+      }
+    // One of the two alone is another pair.
+    const AngleCoordinates other =
+        to_coordinates(Symmetry::anisotropic, {pair.wo, mirrored(pair.wi, true, false)});
+    EXPECT_NE(other.phi_o, c.phi_o);
   }
 }
 
@@ -63,12 +86,14 @@ TEST(Angles, SeamOfTheAzimuth) {
   const Vec3 above = spherical_direction(0.7, 0.1), below = spherical_direction(0.4, -0.2);
   for (const DirectionPair& pair : {DirectionPair{above, below}, DirectionPair{below, above}})
     EXPECT_NEAR(to_coordinates(Symmetry::isotropic, pair).phi_o, 0.3, 1e-14);
+  // wi below the axis is mirrored, and wo with it.
   const AngleCoordinates c = to_coordinates(Symmetry::anisotropic, {above, below});
-  EXPECT_NEAR(c.phi_o, 0.1, 1e-14);
-  EXPECT_NEAR(c.phi_i, 2 * kPi - 0.2, 1e-14);
+  EXPECT_NEAR(c.phi_o, 2 * kPi - 0.1, 1e-14);
+  EXPECT_NEAR(c.phi_i, 0.2, 1e-14);
 }
 
-// "[0, 2 pi)" and "[0, pi]", also where atan2 is just below 0 and rounding could give 2 pi itself.
+// "[0, pi/2]", "[0, 2 pi)" and "[0, pi]", also where atan2 is just below 0 and rounding could give 2 pi
+// itself.
 TEST(Angles, AzimuthsStayInTheirIntervals) {
   Rng rng(4, 0);
   for (int k = 0; k < 1000; ++k) {
@@ -77,11 +102,19 @@ TEST(Angles, AzimuthsStayInTheirIntervals) {
     const AngleCoordinates a = to_coordinates(Symmetry::anisotropic, pair);
     EXPECT_GE(a.phi_o, 0);
     EXPECT_LT(a.phi_o, 2 * kPi) << "y = " << pair.wo.y;
+    const AngleCoordinates exchanged = to_coordinates(Symmetry::anisotropic, {pair.wi, pair.wo});
+    for (const double phi_i : {a.phi_i, exchanged.phi_i}) {
+      EXPECT_GE(phi_i, 0);
+      EXPECT_LE(phi_i, kPi / 2);
+    }
     const AngleCoordinates b = to_coordinates(Symmetry::isotropic, pair);
     EXPECT_EQ(b.phi_i, 0);
     EXPECT_GE(b.phi_o, 0);
     EXPECT_LE(b.phi_o, kPi);
   }
+  for (const double x : {0.0, -0.0})
+    for (const double y : {0.0, -0.0})
+      EXPECT_EQ(to_coordinates(Symmetry::anisotropic, {{x, y, 1}, {x, y, 1}}).phi_i, 0);
 }
 
 TEST(Angles, MirrorSideIsPi) {
@@ -101,10 +134,10 @@ TEST(Angles, IsotropicCoordinatesAreReciprocal) {
   }
 }
 
-// All pairs of the two hemispheres: (2 pi)^2 sr^2, of coordinates 1 * 1 * pi or 1 * 2 pi * 1 * 2 pi.
+// All pairs of the two hemispheres: (2 pi)^2 sr^2, of coordinates 1 * 1 * pi or 1 * pi/2 * 1 * 2 pi.
 TEST(Angles, MeasureOfAllPairs) {
   EXPECT_NEAR(pair_measure(Symmetry::isotropic) * kPi, square(2 * kPi), 1e-12);
-  EXPECT_NEAR(pair_measure(Symmetry::anisotropic) * square(2 * kPi), square(2 * kPi), 1e-12);
+  EXPECT_NEAR(pair_measure(Symmetry::anisotropic) * (kPi / 2) * (2 * kPi), square(2 * kPi), 1e-12);
 }
 
 // The coordinates of uniform pairs fall into boxes as the constant measure says: volume * measure / (2 pi)^2
@@ -114,16 +147,16 @@ TEST(Angles, MeasureByMonteCarlo) {
   for (const Symmetry symmetry : kBoth) {
     const bool isotropic = symmetry == Symmetry::isotropic;
     const int n = isotropic ? 4 : 3;
-    const double phi_range = isotropic ? kPi : 2 * kPi;
-    const double volume = isotropic ? phi_range / (n * n * n) : square(phi_range) / (n * n * n * n);
+    const double phi_o_range = isotropic ? kPi : 2 * kPi, phi_i_range = kPi / 2;
+    const double volume = isotropic ? phi_o_range / (n * n * n) : phi_i_range * phi_o_range / (n * n * n * n);
     std::vector<test::Cell> cells(isotropic ? n * n * n : n * n * n * n,
                                   {0, kPairs * volume * pair_measure(symmetry) / square(2 * kPi), 0});
     Rng rng(6, isotropic);
     for (int k = 0; k < kPairs; ++k) {
       const AngleCoordinates c = to_coordinates(symmetry, {random_direction(rng), random_direction(rng)});
       const auto bin = [n](double x) { return std::clamp(static_cast<int>(x * n), 0, n - 1); };
-      int cell = (bin(c.cos_i) * n + bin(c.cos_o)) * n + bin(c.phi_o / phi_range);
-      if (!isotropic) cell = cell * n + bin(c.phi_i / phi_range);
+      int cell = (bin(c.cos_i) * n + bin(c.cos_o)) * n + bin(c.phi_o / phi_o_range);
+      if (!isotropic) cell = cell * n + bin(c.phi_i / phi_i_range);
       cells[cell].observed += 1;
     }
     // Totals are fixed here, which only lowers the statistic.

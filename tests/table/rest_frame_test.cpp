@@ -122,6 +122,105 @@ TEST(RestFrame, DarkestCornerIsFinite) {
     }
 }
 
+// A pigment that scatters, multiple facets, or both.
+Case random_case_without_decay(Rng& rng) {
+  Case c = random_case(rng);
+  const double kind = rng.uniform();
+  if (kind < 0.7) {
+    c.material.absorption_path = AbsorptionPath::sum;
+    c.material.scattering_per_nm = std::pow(10, -4 + 5 * rng.uniform());
+    c.material.anisotropy = rng.uniform() < 0.3 ? 0.99 : 0.99 * (2 * rng.uniform() - 1);
+  }
+  if (kind > 0.4) {
+    c.material.microfacet = Microfacet::multiple;
+    c.material.roughness = {0.001 + 0.999 * rng.uniform(), 0.001 + 0.999 * rng.uniform()};
+    if (rng.uniform() < 0.3) c.t_i = random_colour(rng, 0, 1e-6);  // R -> 1
+  }
+  return c;
+}
+
+// table.h for them: neither term decays with the remainder, T is raised over multiple facets.
+struct FormulaWithoutDecay : Formula {
+  explicit FormulaWithoutDecay(const Case& c) : Formula(raised(c)) {
+    const Material& m = c.material;
+    const double ratio = m.exterior_ior / m.base_ior;
+    const bool straight = m.transmission == Transmission::straight;
+    const auto below = [&](double x) { return straight ? x : std::sqrt(1 - ratio * ratio * (1 - x * x)); };
+    first_visit *= std::exp(-m.scattering_per_nm * 2 * (1 / below(c.cos_i) + 1 / below(c.cos_o)));
+    decay = 1;
+  }
+  static Case raised(Case c) {
+    if (c.material.microfacet == Microfacet::multiple)
+      for (Rgb* t : {&c.t_i, &c.t_o}) *t = transform(*t, [](double x) { return std::max(x, 0.25); });
+    return c;
+  }
+};
+
+TEST(RestFrame, WithoutDecayDecodeIsTheFormula) {
+  Rng rng(5, 0);
+  for (int k = 0; k < 10000; ++k) {
+    const Case c = random_case_without_decay(rng);
+    const FormulaWithoutDecay formula(c);
+    const Rgb remainder = random_colour(rng, 0, 2);
+    const Rgb found = RestFrame(c.material).decode(remainder, c.cos_i, c.cos_o, c.t_i, c.t_o);
+    const Rgb expected = formula.front * (formula.first_visit + remainder);
+    for (int j = 0; j < 3; ++j) EXPECT_NEAR(found[j], expected[j], 1e-12 * expected[j]) << k;
+  }
+}
+
+// Scattered once near the top, p / (m_i + m_o) in all, with p the Henyey-Greenstein lobe of up to
+// (1 + g) / (1 - g)^2 / (4 pi), and what facets throw at each other, below 1000 but for nearly smooth ones at
+// grazing. Stored as halves, 2^-11 of the value and 3e-8 are lost; larger values are cut, not infinite.
+TEST(RestFrame, WithoutDecayRoundTripsInHalfPrecision) {
+  Rng rng(6, 0);
+  int cut = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const Case c = random_case_without_decay(rng);
+    const FormulaWithoutDecay formula(c);
+    const double g = c.material.anisotropy, above = std::pow(10, -6 + 9 * rng.uniform());
+    const double lobe = (1 + std::abs(g)) / square(1 - std::abs(g)) / (4 * kPi) * rng.uniform();
+    const Rgb rest = formula.front * (formula.first_visit + Rgb(lobe / (c.cos_i + c.cos_o))) +
+                     Rgb(c.material.has_multiple_facets() ? above : 0);
+    const RestFrame frame(c.material);
+    const Rgb remainder = frame.encode(rest, c.cos_i, c.cos_o, c.t_i, c.t_o);
+    const Rgb stored = transform(remainder, [](double x) { return round_to(Precision::half_float, x); });
+    ASSERT_TRUE(is_finite(stored)) << k;
+    const Rgb back = frame.decode(stored, c.cos_i, c.cos_o, c.t_i, c.t_o);
+    for (int j = 0; j < 3; ++j) {
+      const double exact = rest[j] / formula.front[j] - formula.first_visit[j];
+      if (exact > RestFrame::kLargestRemainder) {
+        ++cut;
+        EXPECT_EQ(remainder[j], RestFrame::kLargestRemainder);
+      } else {
+        EXPECT_NEAR(back[j], rest[j], formula.front[j] * (0x1p-11 * exact + 3.1e-8) + 1e-13 * rest[j]) << k;
+      }
+    }
+  }
+  EXPECT_GT(cut, 0);
+  EXPECT_LT(cut, 3 * 20000 / 20);  // the cut is for corners
+}
+
+// Whatever noise or a spike makes of the rest.
+TEST(RestFrame, WithoutDecayNothingOverflows) {
+  Rng rng(7, 0);
+  for (int k = 0; k < 20000; ++k) {
+    Case c = random_case_without_decay(rng);
+    if (k % 2) c.t_o = random_colour(rng, 0, 1e-12);
+    const Rgb rest = random_colour(rng, 0, std::pow(10, -10 + 30 * rng.uniform()));
+    const Rgb remainder = RestFrame(c.material).encode(rest, c.cos_i, c.cos_o, c.t_i, c.t_o);
+    for (int j = 0; j < 3; ++j) ASSERT_LT(std::abs(remainder[j]), kLargestHalf) << k;
+  }
+}
+
+// Continuous in the first visit: a trace of scattering changes what the remainder means, not the visit.
+TEST(RestFrame, ATraceOfScatteringLeavesTheFirstVisit) {
+  Material m;
+  const Rgb plain = RestFrame(m).decode(Rgb(0), 0.5, 0.7, Rgb(0.8), Rgb(0.9));
+  m.scattering_per_nm = 1e-9;
+  const Rgb trace = RestFrame(m).decode(Rgb(0), 0.5, 0.7, Rgb(0.8), Rgb(0.9));
+  EXPECT_NEAR(trace.g, plain.g, 1e-8 * plain.g);
+}
+
 // Where the film lets nothing through there is no rest, and nothing to divide by.
 TEST(RestFrame, OpaqueFilm) {
   const RestFrame frame{Material()};

@@ -131,7 +131,22 @@ inline Table small_table(Precision precision = Precision::half_float, bool rough
   return table;
 }
 
-// The same with folded spectra.
+// small_table() of an anisotropic film.
+inline Table small_anisotropic_table(Precision precision = Precision::half_float) {
+  Table table = small_table(precision);
+  table.symmetry = Symmetry::anisotropic;
+  table.material.roughness = {0.3, 0.1};
+  auto axes = small_rest_axes();
+  axes[4] = axis("phi_i", {0, kPi / 4, kPi / 2});
+  axes[6] = full_circle("phi_o", 8);
+  table.remainder = NdArray("remainder", axes, precision);
+  table.rest_stderr = NdArray("rest_stderr", axes, precision);
+  fill_randomly(table.remainder, -0.01, 0.2, 1);
+  fill_randomly(table.rest_stderr, 0, 0.001, 2);
+  return table;
+}
+
+// small_table() with folded spectra.
 inline Table small_full_table() {
   Table table = small_table();
   table.first_visit = NdArray("first_visit", {axis("optical_path", {0, 1, 10}, 3)}, Precision::single_float);

@@ -24,6 +24,7 @@ std::vector<Table> assorted_tables() {
   tables.back().material.transmission = Transmission::straight;
   tables.back().material.absorption_path = AbsorptionPath::product;
   tables.back().material.film_ior = 1.0 / 3 + 1;  // no short decimal
+  tables.push_back(test::small_anisotropic_table());
   tables.push_back(test::small_full_table());
   return tables;
 }

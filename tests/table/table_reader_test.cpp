@@ -57,6 +57,16 @@ std::function<void(Table&)> with_rest_axis(std::size_t k, std::vector<double> no
   };
 }
 
+// Both with axis `k` of this period.
+std::function<void(Table&)> with_rest_period(std::size_t k, double period) {
+  return [=](Table& table) {
+    auto axes = table.remainder.axes();
+    axes[k].period = period;
+    table.remainder = rebuilt(table.remainder, axes);
+    table.rest_stderr = rebuilt(table.rest_stderr, axes);
+  };
+}
+
 std::vector<Defect> defects() {
   std::vector<Defect> list = {
       {"missing array",
@@ -123,7 +133,24 @@ std::vector<Defect> defects() {
       {"horizon", with_rest_axis(3, {0, 1}), {"'cos_theta_i'", "to 1"}},
       {"cosine above 1", with_rest_axis(5, {0.5, 1.01}), {"'cos_theta_o'", "to 1"}},
       {"azimuth below 0", with_rest_axis(6, {-0.1, 1}), {"'phi_o'", "0 to"}},
-      {"azimuth beyond a turn", with_rest_axis(6, {0, 7}), {"'phi_o'", "0 to"}},
+      {"azimuth beyond the mirror side", with_rest_axis(6, {0, 3.2}), {"'phi_o'", "0 to"}},
+      {"azimuth that stops short of the mirror side",
+       with_rest_axis(6, {0, 3}),
+       {"'phi_o'", "from 0 to 3;", "expected 0 to 3.14"}},
+      {"periodic azimuth in an isotropic table",
+       with_rest_period(6, 2 * kPi),
+       {"'phi_o'", "period 6.28", "expected 0"}},
+      {"anisotropic roughness",
+       [](Table& t) {
+         t.material.roughness = {0.1, 0.3};
+       },
+       {"symmetry is isotropic", "0.1;0.3", "expected symmetry anisotropic"}},
+      {"smooth film in an anisotropic table",
+       [](Table& t) {
+         t.symmetry = Symmetry::anisotropic;
+         t.material.roughness = 0;
+       },
+       {"symmetry is anisotropic", "roughness is 0", "expected symmetry isotropic"}},
       {"film cosine below 0",
        [](Table& t) {
          auto axes = t.film_reflectance.axes();
@@ -145,10 +172,10 @@ std::vector<Defect> defects() {
   return list;
 }
 
-TEST(TableReader, NamesEveryDefect) {
+void expect_named(const Table& sound, const std::vector<Defect>& defects) {
   for (const Form& form : forms())
-    for (const Defect& defect : defects()) {
-      Table table = small_table();
+    for (const Defect& defect : defects) {
+      Table table = sound;
       ASSERT_EQ(refusal(form, form.bytes(table), kName), "accepted");
       defect.make(table);
       const std::string message = refusal(form, form.bytes(table), kName);
@@ -156,6 +183,24 @@ TEST(TableReader, NamesEveryDefect) {
       for (const std::string& part : defect.named)
         EXPECT_THAT(message, HasSubstr(part)) << form.name << ", " << defect.description;
     }
+}
+
+TEST(TableReader, NamesEveryDefect) { expect_named(small_table(), defects()); }
+
+TEST(TableReader, NamesEveryDefectOfAnAnisotropicTable) {
+  expect_named(
+      test::small_anisotropic_table(),
+      {{"isotropic roughness",
+        [](Table& t) { t.material.roughness = 0.1; },
+        {"symmetry is anisotropic", "roughness is 0.1;", "expected symmetry isotropic"}},
+       {"one azimuth of wi", with_rest_axis(4, {0}), {"'phi_i'", "from 0 to 0;", "expected 0 to 1.57"}},
+       {"azimuth of wi that starts late", with_rest_axis(4, {0.1, kPi / 2}), {"'phi_i'", "from 0.1 to 1.57"}},
+       {"azimuth of wi beyond the quadrant", with_rest_axis(4, {0, kPi}), {"'phi_i'", "from 0 to 3.14"}},
+       {"periodic azimuth of wi", with_rest_period(4, 2 * kPi), {"'phi_i'", "period 6.28", "expected 0"}},
+       {"azimuth of wo below 0", with_rest_axis(6, {-0.1, 1}), {"'phi_o'", "0 to"}},
+       {"azimuth of wo beyond a turn", with_rest_axis(6, {6, 7}), {"'phi_o'", "0 to"}},
+       {"azimuth of wo without period", with_rest_period(6, 0), {"'phi_o'", "period 0", "expected 6.28"}},
+       {"azimuth of wo of another period", with_rest_period(6, 6.3), {"'phi_o'", "period 6.3", "6.28"}}});
 }
 
 // Edits the value of a text attribute in place, length kept. Both formats write: name, "string" as the type,
@@ -337,11 +382,12 @@ TEST(TableReader, SurvivesTruncationUnderAForeignIdentifier) {
 }
 
 TEST(TableReader, SurvivesFlippedBits) {
-  for (const Precision precision : {Precision::half_float, Precision::single_float}) {
-    const Table table = small_table(precision);
+  const Table tables[] = {small_table(Precision::single_float), small_table(Precision::half_float),
+                          test::small_anisotropic_table()};
+  for (const Table& table : tables) {
     for (const Form& form : forms()) {
       const std::string bytes = form.bytes(table);
-      Rng rng(1, precision == Precision::half_float);
+      Rng rng(1, static_cast<std::uint64_t>(&table - tables));
       for (int k = 0; k < 300; ++k) {
         const auto at = static_cast<std::size_t>(rng.uniform() * static_cast<double>(bytes.size()));
         const unsigned bit = rng.next() % 8;

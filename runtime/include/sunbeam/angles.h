@@ -1,8 +1,10 @@
 // Direction pairs <-> table coordinates. Map, inverse and Jacobian stand side by side.
 //
 // A table has four angular axes, cosines and azimuths (radians): (cos_theta_i, phi_i, cos_theta_o, phi_o).
-// anisotropic: the azimuths of wi and wo, both in [0, 2 pi).
+// anisotropic: the film is its own mirror image in x and in y. Both directions are mirrored such that wi has
+//              x, y >= 0; then phi_i in [0, pi/2] is the azimuth of wi and phi_o in [0, 2 pi) that of wo.
 // isotropic:   phi_i = 0 and phi_o = |azimuth between wi and wo| in [0, pi]; pi is the mirror side.
+// The azimuth of a direction along z is arbitrary: a table holds the same values at all of them.
 #pragma once
 
 #include "sunbeam/core/vec.h"
@@ -27,22 +29,32 @@ inline double azimuth(const Vec3& w) {
   return wrapped < 2 * kPi ? wrapped : 0;  // a tiny negative angle would round to 2 pi
 }
 
+// The pair or its mirror image in x, y or both: the one whose wi has x, y >= 0.
+inline DirectionPair folded(const DirectionPair& pair) {
+  const double x = pair.wi.x < 0 ? -1 : 1, y = pair.wi.y < 0 ? -1 : 1;
+  return {{x * pair.wo.x, y * pair.wo.y, pair.wo.z}, {std::abs(pair.wi.x), std::abs(pair.wi.y), pair.wi.z}};
+}
+
 inline AngleCoordinates to_coordinates(Symmetry symmetry, const DirectionPair& pair) {
-  const double phi_i = azimuth(pair.wi), phi_o = azimuth(pair.wo);
-  if (symmetry == Symmetry::anisotropic) return {pair.wi.z, phi_i, pair.wo.z, phi_o};
-  const double between = std::abs(phi_o - phi_i);
+  if (symmetry == Symmetry::anisotropic) {
+    const DirectionPair first_quadrant = folded(pair);
+    return {pair.wi.z, azimuth(first_quadrant.wi), pair.wo.z, azimuth(first_quadrant.wo)};
+  }
+  const double between = std::abs(azimuth(pair.wo) - azimuth(pair.wi));
   return {pair.wi.z, 0, pair.wo.z, std::min(between, 2 * kPi - between)};
 }
 
-// A pair with these coordinates; for an isotropic table the one with wi in the xz plane and wo at +|dphi|.
+// A pair with these coordinates; for an anisotropic table the folded one, for an isotropic one that with wi
+// in the xz plane and wo at +|dphi|.
 inline DirectionPair to_directions(const AngleCoordinates& c) {
   return {direction_from_cosine(c.cos_o, c.phi_o), direction_from_cosine(c.cos_i, c.phi_i)};
 }
 
 // Measure of direction pairs per unit of coordinates, dwi dwo / d(coordinates), in sr^2. Cosines make it
-// constant; an isotropic coordinate stands for every common azimuth (2 pi) and both signs of dphi (2).
+// constant; an anisotropic coordinate stands for four mirror images, an isotropic one for every common
+// azimuth (2 pi) and both signs of dphi (2).
 inline constexpr double pair_measure(Symmetry symmetry) {
-  return symmetry == Symmetry::anisotropic ? 1 : 4 * kPi;
+  return symmetry == Symmetry::anisotropic ? 4 : 4 * kPi;
 }
 
 }  // namespace sunbeam

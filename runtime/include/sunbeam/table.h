@@ -1,23 +1,28 @@
 // A baked material: BRDF data over (film thickness, base IOR, absorption) and two directions.
 //
 // What is exactly known stays in closed form and only the remainder is tabulated; with c_i, c_o the cosines
-// of the directions, m_i, m_o the cosines below the film, tau the optical depth, s = (n0/n2)^2 or 1 and kd
-// albedo:
+// of the directions, m_i, m_o the cosines below the film, tau the optical depth, tau_s the scattering depth,
+// s = (n0/n2)^2 or 1 and kd albedo:
 //
 //   f     = first + rest
 //   first = D(h) G2(wi, wo) R(wi.h) / (4 c_i c_o)            (smooth film: a Dirac of weight R(c_i) instead)
-//   rest  = s T(c_i) T(c_o) [ kd/pi exp(-tau path(m_i, m_o)) + exp(-min(tau (1/m_i + 1/m_o), 12)) remainder ]
+//   rest  = s T(c_i) T(c_o) [ ballistic kd/pi exp(-tau path(m_i, m_o)) + decay remainder ]
+//   ballistic = exp(-tau_s (1/m_i + 1/m_o)),  decay = exp(-min(tau (1/m_i + 1/m_o), 12))
 //
 // R = `film_reflectance`, T = 1 - R for a smooth film and `film_transmittance` for a rough one, `remainder` =
 // the array of that name; path as in AbsorptionPath. The first term in brackets is one visit of the base
-// through a smooth film, the remainder holds further visits and what roughness changes. The exponential in
-// front of it carries its decay; the cap keeps it within the range of a half float. All values are per colour
-// channel.
+// through a smooth film, the remainder holds further visits, what the pigment scatters and what roughness
+// changes. The decay is that of the remainder; the cap keeps it within the range of a half float. All values
+// are per colour channel.
+//
+// Some light of the rest has not been through the pigment: scattered near its top, or thrown from facet to
+// facet above the film. It does not decay, so a pigment that scatters and multiple facets have decay = 1.
+// Multiple facets reflect where the film lets nothing through (R near 1), so T is raised to 0.25 for them.
 //
 // Where colours are folded spectra (spectrum "full") the two terms become
-//   F(tau path) / pi + decay(tau (1/m_i + 1/m_o)) remainder,
+//   ballistic F(tau path) / pi + decay(tau (1/m_i + 1/m_o)) remainder,
 //   decay(x) = F(x) / F(0), kept within a factor of 10 of D = max(mean F(x) / mean F(0), exp(-12)); D if F(0)
-//   <= 0,
+//   <= 0; or 1 as above,
 // with F = `first_visit`, T in front is raised to 30 % of its mean over channels, and values may be negative.
 #pragma once
 
@@ -92,6 +97,11 @@ struct Table {
 // The remainder's frame at one parameter point, shared by the bake (encode) and the look-up (decode).
 class RestFrame {
  public:
+  // Where the remainder does not decay it has lobes, of a peaked phase function or of nearly smooth facets at
+  // grazing, too high for a half float, which ends at 65504, and too narrow for any table. encode() cuts
+  // them.
+  static constexpr double kLargestRemainder = 60000;
+
   // `first_visit` as in Table: empty for rgb3.
   explicit RestFrame(const Material& material, const NdArray& first_visit = {});
 
@@ -104,12 +114,16 @@ class RestFrame {
     Rgb first_visit;  // in brackets, first term
     Rgb decay;        // in brackets, what the remainder is multiplied by
   };
+  Rgb factor(const Rgb& transmittance) const;
   Rgb first_visit(double optical_path) const;
-  Terms folded_terms(double m_i, double m_o, const Rgb& t_i, const Rgb& t_o) const;
+  Terms rgb3_terms(double m_i, double m_o) const;    // without front
+  Terms folded_terms(double m_i, double m_o) const;  // the same for full
   Terms terms(double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
 
   Material material_;
   double scale_;
+  double least_transmittance_;
+  bool decays_;
   std::vector<Rgb>
       first_visit_;  // F at even steps of x / (1 + x) from 0 to 1: no search, no root; empty for rgb3
 };

@@ -4,9 +4,11 @@
 // eval = first + rest of table.h, 1/sr, without the cosine and without the Dirac part.
 // sample mixes two techniques, chosen by their directional albedos: visible normals for the first surface
 // (for a smooth film: its mirror direction, a Dirac), and tabulated densities over cos(theta_i) for the rest.
-// pdf is the exact density of that mixture. Directions that visible normals send below the horizon are empty.
+// Neither the choice nor those densities depend on the azimuth of wo. pdf is the exact density of that
+// mixture. Directions that visible normals send below the horizon are empty.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -58,6 +60,13 @@ class TableBsdf final : public Bsdf {
   Rgb albedo(const Vec3& wo) const;
 
  private:
+  struct AzimuthNode {
+    double phi_i, phi_o;  // table coordinates
+    double weight;        // all add up to 1
+  };
+  std::array<double, 4> coordinates(const Vec3& wo, const Vec3& wi) const;
+  std::vector<AzimuthNode> azimuths_around(const Vec3& wo) const;
+  double make_sampling_node(double cos_o);
   Rgb first_albedo(const Vec3& wo, int nodes) const;
   Rgb rest_albedo(const Vec3& wo, std::vector<double>* marginal) const;
   double first_chance(double cos_o) const;
@@ -69,9 +78,10 @@ class TableBsdf final : public Bsdf {
   RestFrame frame_;
   Ggx ggx_;
   NdArray remainder_, stderr_;  // over the four angles
+  bool has_azimuth_;            // else they have one node each, and finding the azimuths would be in vain
   CosineCurve reflectance_, transmittance_;
 
-  // Sampling data over cos(theta_o), equally spaced nodes.
+  // Sampling data over cos(theta_o), equally spaced nodes; means over the azimuth of wo.
   CosineCurve first_chance_;
   std::vector<PiecewiseConstant> rest_marginals_;
 };

@@ -14,6 +14,8 @@ struct Kernels {
   void (*bidirectional)(const Layers& layers, double wi, double wo, Rng& rng, double* sums);
   // The film at one cosine and all wavelengths; writes up to kMostWavelengths.
   void (*reflectances)(const FilmSide& film, const FilmPhases& phases, double cosine, double* r);
+  // power[j] *= exp(-tau[j] length), j < count; writes up to kMostWavelengths.
+  void (*attenuate)(const double* tau, double length, int count, double* power);
 };
 
 // What every machine of this kind of processor has (x86-64: SSE2; ARM: NEON).

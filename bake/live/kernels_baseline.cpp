@@ -9,6 +9,6 @@ using Baseline = xsimd::default_arch;
 #endif
 
 const Kernels kBaselineKernels{"baseline", unidirectional<Baseline>, bidirectional<Baseline>,
-                               reflectances<Baseline>};
+                               reflectances<Baseline>, attenuate<Baseline>};
 
 }  // namespace sunbeam::walk

@@ -26,4 +26,12 @@ SUNBEAM_FLATTEN void reflectances(const FilmSide& film, const FilmPhases& phases
     lanes.reflectance_at(Batch::load_unaligned(&phases.k[j])).store_unaligned(r + j);
 }
 
+template <class Arch>
+SUNBEAM_FLATTEN void attenuate(const double* tau, double length, int count, double* power) {
+  using Batch = xsimd::batch<double, Arch>;
+  for (int j = 0; j < count; j += static_cast<int>(Batch::size))
+    (Batch::load_unaligned(power + j) * exp_negative(Batch::load_unaligned(tau + j) * Batch(-length)))
+        .store_unaligned(power + j);
+}
+
 }  // namespace sunbeam::walk

@@ -137,9 +137,9 @@ walk::Stack Pfmc::stack(walk::Carrying carrying) const {
 void Pfmc::add_stack_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, std::span<Rgb> sums,
                           Technique technique) const {
   const walk::Stack stack = this->stack(walk::Carrying::power);
-  const std::size_t most = technique == Technique::unidirectional ? walk::Stack::kMostExits : 1;
-  for (std::size_t first = 0; first < wo.size(); first += most) {
-    const std::size_t exits = std::min(most, wo.size() - first);
+  constexpr std::size_t kMost = walk::Stack::kMostExits;
+  for (std::size_t first = 0; first < wo.size(); first += kMost) {
+    const std::size_t exits = std::min(kMost, wo.size() - first);
     Vec3 open[walk::Stack::kMostExits];
     double values[walk::Stack::kMostExits * kMostWavelengths];
     for (std::size_t k = 0; k < exits; ++k) open[k] = wo[first + k].z > 0 ? wo[first + k] : Vec3{0, 0, 1};
@@ -147,7 +147,7 @@ void Pfmc::add_stack_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, st
     if (technique == Technique::unidirectional)
       stack.add_unidirectional(wi, open, static_cast<int>(exits), rng, values);
     else
-      stack.add_bidirectional(wi, open[0], rng, values);
+      stack.add_bidirectional(wi, open, static_cast<int>(exits), rng, values);
     for (std::size_t k = 0; k < exits; ++k)
       if (wo[first + k].z > 0) sums[first + k] += fold(values + k * layers_.count);
   }
@@ -166,7 +166,7 @@ double Pfmc::estimate_stack_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const 
   double density = 0;
   const walk::Stack chances = stack(walk::Carrying::chance);
   if (stack_.slab.scatters())
-    chances.add_bidirectional(wo, wi, rng, &density);
+    chances.add_bidirectional(wo, &wi, 1, rng, &density);
   else
     chances.add_unidirectional(wo, &wi, 1, rng, &density);
   return density * wi.z;

@@ -217,7 +217,7 @@ void Stack::attenuate(double length, Powers& power) const {
     if (layers_.least_tau > 0) scale(power, count_, std::exp(-layers_.least_tau * length));
     return;
   }
-  for (int j = 0; j < count_; ++j) power[j] *= std::exp(-layers_.tau[j] * length);
+  kernels_.attenuate(layers_.tau.data(), length, count_, power.data());
 }
 
 // Up from the base, which light reached at the cosine `arrived`.
@@ -421,7 +421,7 @@ void Stack::add_unidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& r
 // A ray of the camera's walk through the slab: light that reaches `origin` against it is seen.
 struct Stack::CameraRay {
   double origin;
-  Vec3 up;  // travel of that light
+  double x, y, z;  // travel of that light
   Powers power;
   double others;  // sum of 1 / (phase flight) over the walk's scattering events
   int events;     // their number
@@ -429,16 +429,14 @@ struct Stack::CameraRay {
 
 struct Stack::CameraVisit {
   static constexpr bool kIsCamera = true;
-  explicit CameraVisit(int most) : most_events(most) {}
-
-  int most_events;
+  int most_events = 0;
   Powers arrived{};
   int rays = 0, events = 0;
   double others = 0, last_flight = 0;
   std::array<CameraRay, 2 * kMostCameraEvents + 1> ray;
 
   void add(double origin, const Vec3& travel, const Powers& power) {
-    if (events <= most_events) ray[rays++] = {origin, -travel, power, others, events};
+    if (events <= most_events) ray[rays++] = {origin, -travel.x, -travel.y, -travel.z, power, others, events};
   }
   void leg(double flight) { last_flight = flight; }
   void meet(double, const Vec3&, const Powers&) {}
@@ -458,7 +456,8 @@ struct Stack::CameraVisit {
 struct Stack::PairedLightVisit {
   static constexpr bool kIsCamera = false;
   const Stack& stack;
-  const CameraVisit& camera;
+  const CameraVisit* cameras;
+  int count;
   double* sums;
   Powers arrived{};
   bool has_seen_base = false;
@@ -473,12 +472,15 @@ struct Stack::PairedLightVisit {
   }
   void meet(double depth, const Vec3& travel, const Powers& power) {
     if (has_seen_base) return;
-    for (int k = 0; k < camera.rays; ++k) {
-      const CameraRay& ray = camera.ray[k];
-      double others = ray.others;
-      for (int e = 0; e < stack.camera_events_ - ray.events; ++e) others += inverse[e];
-      stack.scatter_towards(depth, travel, power, ray.up, ray.origin, ray.power, others, sums);
-    }
+    std::array<double, kMostCameraEvents + 1> lately{};  // sums over the last events
+    for (int e = 0; e < stack.camera_events_; ++e) lately[e + 1] = lately[e] + inverse[e];
+    for (int k = 0; k < count; ++k)
+      for (int r = 0; r < cameras[k].rays; ++r) {
+        const CameraRay& ray = cameras[k].ray[r];
+        stack.scatter_towards(depth, travel, power, {ray.x, ray.y, ray.z}, ray.origin, ray.power,
+                              ray.others + lately[stack.camera_events_ - ray.events],
+                              sums + k * stack.count_);
+      }
   }
   void scattered(double phase, double, const Vec3&, const Powers&) { last_phase = phase; }
   void thrown_back(const Vec3&, const Powers&) {}
@@ -489,27 +491,29 @@ struct Stack::PairedLightVisit {
   }
 };
 
-void Stack::add_bidirectional(const Vec3& wi, const Vec3& wo, Rng& rng, double* sums) const {
-  if (layers_.product) return add_unidirectional(wi, &wo, 1, rng, sums);
-  Powers light{}, camera{};  // sums over walks, for the base part
+void Stack::add_bidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const {
+  if (layers_.product) return add_unidirectional(wi, wo, exits, rng, sums);
+  Powers light{}, leaving[kMostExits]{};  // sums over walks, for the base part
   for (int walk = 0; walk < kWalks; ++walk) {
-    Exit exit;
-    draw_exit(wo, exit, rng);
-    CameraVisit seen(camera_events_);
-    if (exit.is_open) {
-      Powers power = exit.power;
-      seen.add(0, -exit.up, power);
-      walk_below(-exit.up, power, rng, seen);
-      for (int j = 0; j < count_; ++j) camera[j] += seen.arrived[j];
+    Exit exit[kMostExits];
+    CameraVisit seen[kMostExits];
+    for (int k = 0; k < exits; ++k) {
+      draw_exit(wo[k], exit[k], rng);
+      seen[k].most_events = camera_events_;
+      if (!exit[k].is_open) continue;
+      Powers power = exit[k].power;
+      seen[k].add(0, -exit[k].up, power);
+      walk_below(-exit[k].up, power, rng, seen[k]);
+      for (int j = 0; j < count_; ++j) leaving[k][j] += seen[k].arrived[j];
     }
     Powers power;
     Vec3 travel;
-    if (!draw_entry(wi, &exit, 1, power, travel, rng, sums)) continue;
-    PairedLightVisit visit{*this, seen, sums};
+    if (!draw_entry(wi, exit, exits, power, travel, rng, sums)) continue;
+    PairedLightVisit visit{*this, seen, exits, sums};
     walk_below(travel, power, rng, visit);
     for (int j = 0; j < count_; ++j) light[j] += visit.arrived[j];
   }
-  add_base(light, camera, kWalks * kWalks, sums);
+  for (int k = 0; k < exits; ++k) add_base(light, leaving[k], kWalks * kWalks, sums + k * count_);
 }
 
 // One facet: true if it mirrors. `power` is multiplied by what that turn weighs.

@@ -58,7 +58,7 @@ class Stack {
 
   // Adds an estimate of rest(wo[k], wi), 1/sr per wavelength, to sums[k * count + j].
   void add_unidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const;
-  void add_bidirectional(const Vec3& wi, const Vec3& wo, Rng& rng, double* sums) const;
+  void add_bidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const;
 
   // One walk from wo. `power` is its throughput (unless is_first); every turn is taken by its mean power.
   StackSample sample(const Vec3& wo, Powers& power, Rng& rng) const;

@@ -22,6 +22,11 @@ class Facets {
 
   // cosine (1 + 2 Lambda).
   SUNBEAM_INLINE V root(const V& cosine) const { return sqrt(squared(cosine) * V(1 - alpha2_) + V(alpha2_)); }
+  // Projected area of the facets that light travelling at this cosine meets, which may be negative: towards
+  // them (microsurface.h).
+  SUNBEAM_INLINE V area(const V& travel) const {
+    return max(V(0.5) * (root(travel) - travel), V(kLeastArea));
+  }
   // G2(a, b) / G1(a).
   SUNBEAM_INLINE V g2_over_g1(const V& a, const V& root_a, const V& b, const V& root_b) const {
     return b * (a + root_a) / (root_a * b + root_b * a);
@@ -42,7 +47,8 @@ class Facets {
     V cosine;  // with w
     V along;   // component along the tangent towards w
   };
-  // With density D_vis(h; w), by spherical caps (Dupuy and Benyoub 2023).
+  // With density D_vis(h; w), for w on either side of the macro surface; by spherical caps (Dupuy and Benyoub
+  // 2023).
   SUNBEAM_INLINE Normal sample(const V& w, const V& root_w, Rng& rng) const {
     // All lengths times root_w, which is that of the stretched w.
     const V alpha(alpha_), axis_x = alpha * sine_of(w);
@@ -57,6 +63,8 @@ class Facets {
   }
 
  private:
+  static constexpr double kLeastArea = 1e-18;  // straight away there are none
+
   double alpha2_, alpha_;
 };
 

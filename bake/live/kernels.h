@@ -5,13 +5,18 @@
 
 namespace sunbeam::walk {
 
-// The first two add estimates of rest, 1/sr per wavelength, to sums (see walk.h, bidirectional.h); wi and wo
-// are cosines. None allocates memory. All instruction sets give the same bits.
+// The first three add estimates of rest, 1/sr per wavelength, to sums (see walk.h, bidirectional.h; of the
+// base part alone: facets_walk.h); wi and wo are cosines. None allocates memory. All instruction sets give
+// the same bits.
 struct Kernels {
   const char* name;
   void (*unidirectional)(const Layers& layers, double wi, const double* wo, int exits, Rng& rng,
                          double* sums);
   void (*bidirectional)(const Layers& layers, double wi, double wo, Rng& rng, double* sums);
+  void (*multiple_facets)(const Layers& layers, double wi, const double* wo, int exits, Rng& rng,
+                          double* sums);
+  // Of its share of light that comes back to the base; see facets_walk.h.
+  void (*returns)(const Layers& layers, Rng& rng, double* sums);
   // The film at one cosine and all wavelengths; writes up to kMostWavelengths.
   void (*reflectances)(const FilmSide& film, const FilmPhases& phases, double cosine, double* r);
   // power[j] *= exp(-tau[j] length), j < count; writes up to kMostWavelengths.

@@ -8,7 +8,8 @@ using Baseline = xsimd::sse2;
 using Baseline = xsimd::default_arch;
 #endif
 
-const Kernels kBaselineKernels{"baseline", unidirectional<Baseline>, bidirectional<Baseline>,
-                               reflectances<Baseline>, attenuate<Baseline>};
+const Kernels kBaselineKernels{
+    "baseline",        unidirectional<Baseline>, bidirectional<Baseline>, multiple_facets<Baseline>,
+    returns<Baseline>, reflectances<Baseline>,   attenuate<Baseline>};
 
 }  // namespace sunbeam::walk

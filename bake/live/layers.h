@@ -31,6 +31,9 @@ struct Layers {
   bool product;   // exp(-tau / (cos_i cos_o)); else exp(-tau (1 / cos_i + 1 / cos_o))
   double radiance_scale;
 
+  // Forecast of the power that ever visits the base, for walks that end (facets_walk.h): of light that is
+  // there, 1 / (1 - share that comes back), and of light on its way back.
+  std::array<double, kMostWavelengths> visits{}, later_visits{};
   Guide guide;         // for walks that go on: towards what the film throws back and the pigment lets through
   Guide open_guide;    // for walks that may leave: towards what gets out, now or later
   double worth_below;  // of the light that enters the film, about what leaves again; at least kLeastWorth, 1
@@ -45,6 +48,8 @@ struct Layers {
       phases.k[k] = all.phases.k[which(k)];
       albedo[k] = all.albedo[which(k)];
       tau[k] = all.tau[which(k)];
+      visits[k] = all.visits[which(k)];
+      later_visits[k] = all.later_visits[which(k)];
     }
     summarise();
   }

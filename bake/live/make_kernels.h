@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bake/live/bidirectional.h"
+#include "bake/live/facets_walk.h"
 #include "bake/live/kernels.h"
 #include "bake/live/walk.h"
 
@@ -16,6 +17,17 @@ SUNBEAM_FLATTEN void unidirectional(const Layers& layers, double wi, const doubl
 template <class Arch>
 SUNBEAM_FLATTEN void bidirectional(const Layers& layers, double wi, double wo, Rng& rng, double* sums) {
   BidirectionalWalk<Packet<Arch>>(layers).add(wi, wo, rng, sums);
+}
+
+template <class Arch>
+SUNBEAM_FLATTEN void multiple_facets(const Layers& layers, double wi, const double* wo, int exits, Rng& rng,
+                                     double* sums) {
+  FacetsWalk<Packet<Arch>>(layers).add(wi, wo, exits, rng, sums);
+}
+
+template <class Arch>
+SUNBEAM_FLATTEN void returns(const Layers& layers, Rng& rng, double* sums) {
+  FacetsWalk<Packet<Arch>>(layers).add_returns(rng, sums);
 }
 
 template <class Arch>

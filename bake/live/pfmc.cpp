@@ -28,7 +28,7 @@ Vec3 facet_normal(const Vec3& w, const Lane::Normal& facet, Rng& rng) {
 Pfmc::Pfmc(const Material& material, const Wavelengths& wavelengths, const walk::Kernels& kernels)
     : layers_(material, wavelengths),
       stack_(material),
-      is_plain_(material.is_plain()),
+      family_(family_of(material)),
       weight_{},
       importance_{},
       ggx_(material.roughness),
@@ -40,6 +40,24 @@ Pfmc::Pfmc(const Material& material, const Wavelengths& wavelengths, const walk:
     sum += importance_[k];
   }
   for (int k = 0; k < layers_.count; ++k) importance_[k] /= sum;
+  if (family_ == Family::facets) forecast_visits();
+}
+
+Pfmc::Family Pfmc::family_of(const Material& material) {
+  if (material.is_plain()) return Family::plain;
+  return !material.scatters() && material.roughness.is_isotropic() ? Family::facets : Family::general;
+}
+
+// Noise here is harmless: estimates correct it.
+void Pfmc::forecast_visits() {
+  constexpr int kPackets = 200;
+  Rng rng(1, 0);
+  Powers returns{};
+  for (int i = 0; i < kPackets; ++i) kernels_->returns(layers_, rng, returns.data());
+  for (int k = 0; k < layers_.count; ++k) {
+    layers_.visits[k] = 1 / std::max(1 - returns[k] / kPackets, 0.01);
+    layers_.later_visits[k] = layers_.visits[k] * std::exp(-3 * layers_.tau[k]);  // obliquely up and down
+  }
 }
 
 Pfmc Pfmc::at(std::span<const Pick> picks) const {
@@ -92,7 +110,7 @@ double Pfmc::reflect_chance(double cos_exterior) const {
 }
 
 double Pfmc::leaving_shape(double cos_exterior) const {
-  if (!is_plain_) return cos_exterior;
+  if (family_ != Family::plain) return cos_exterior;
   const double below2 = 1 - square(layers_.index_ratio) * (1 - square(cos_exterior));
   if (below2 <= 0) return 0;
   return (1 - mean_reflectance(cos_exterior)) * layers_.open_guide.density(below2) * cos_exterior;
@@ -114,7 +132,7 @@ Rgb Pfmc::estimate_rest(const Vec3& wo, const Vec3& wi, Rng& rng, Technique tech
 void Pfmc::add_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, std::span<Rgb> sums,
                     Technique technique) const {
   if (wi.z <= 0) return;
-  if (!is_plain_) return add_stack_rest(wi, wo, rng, sums, technique);
+  if (family_ != Family::plain) return add_stack_rest(wi, wo, rng, sums, technique);
   const std::size_t chunk = technique == Technique::unidirectional ? kChunk : 1;
   for (std::size_t first = 0; first < wo.size(); first += chunk) {
     const std::size_t exits = std::min(chunk, wo.size() - first);
@@ -144,13 +162,22 @@ void Pfmc::add_stack_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, st
     double values[walk::Stack::kMostExits * kMostWavelengths];
     for (std::size_t k = 0; k < exits; ++k) open[k] = wo[first + k].z > 0 ? wo[first + k] : Vec3{0, 0, 1};
     std::fill_n(values, exits * layers_.count, 0.0);
-    if (technique == Technique::unidirectional)
+    if (family_ == Family::facets)
+      add_facets_rest(wi, open, static_cast<int>(exits), rng, values);
+    else if (technique == Technique::unidirectional)
       stack.add_unidirectional(wi, open, static_cast<int>(exits), rng, values);
     else
       stack.add_bidirectional(wi, open, static_cast<int>(exits), rng, values);
     for (std::size_t k = 0; k < exits; ++k)
       if (wo[first + k].z > 0) sums[first + k] += fold(values + k * layers_.count);
   }
+}
+
+void Pfmc::add_facets_rest(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* values) const {
+  double cosines[walk::Stack::kMostExits];
+  for (int k = 0; k < exits; ++k) cosines[k] = wo[k].z;
+  kernels_->multiple_facets(layers_, wi.z, cosines, exits, rng, values);
+  stack(walk::Carrying::power).add_facets(wi, wo, exits, rng, values);
 }
 
 std::optional<BsdfSample> Pfmc::sample_stack(const Vec3& wo, Rng& rng, const Pfmc& below) const {
@@ -174,7 +201,7 @@ double Pfmc::estimate_stack_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const 
 
 std::optional<BsdfSample> Pfmc::sample(const Vec3& wo, Rng& rng, const Pfmc& below) const {
   if (wo.z <= 0) return {};
-  if (!is_plain_) return sample_stack(wo, rng, below);
+  if (family_ != Family::plain) return sample_stack(wo, rng, below);
   const Lane events(layers_);
   const auto facet = events.meet(wo.z, rng);
   const Powers power = reflectances(layers_.film, facet.cosine);
@@ -235,7 +262,7 @@ double Pfmc::leave_pdf(const Vec3& wi, Rng& rng, double& cosine) const {
 
 double Pfmc::estimate_pdf(const Vec3& wo, const Vec3& wi, Rng& rng, const Pfmc& below) const {
   if (wo.z <= 0 || wi.z <= 0) return 0;
-  if (!is_plain_) return below.first_pdf(wo, wi) + below.estimate_stack_pdf(wo, wi, rng);
+  if (family_ != Family::plain) return below.first_pdf(wo, wi) + below.estimate_stack_pdf(wo, wi, rng);
   const Lane events(layers_);
   const auto facet = events.meet(wo.z, rng);
   const auto passage = events.cross(wo.z, facet, layers_.index_ratio);

@@ -11,9 +11,10 @@
 // the whole rest.
 //
 // For plain materials (Material::is_plain) one estimate is the mean of kLanes stratified walks, worked on
-// side by side at all wavelengths (kernels.h); for all others the mean of Stack::kWalks walks in three
-// dimensions (stack.h). Directions are chosen alike for all wavelengths. No hidden state, no allocation in a
-// call.
+// side by side at all wavelengths (kernels.h); so it is for what has reached the base through multiple
+// isotropic facets and a clear pigment (facets_walk.h), whatever the technique. All else is the mean of a few
+// walks in three dimensions (stack.h). Directions are chosen alike for all wavelengths. No hidden state, no
+// allocation in a call.
 #pragma once
 
 #include <array>
@@ -40,7 +41,7 @@ class Pfmc {
 
   int wavelengths() const { return layers_.count; }
 
-  int walks_per_estimate() const { return is_plain_ ? walk::kLanes : walk::Stack::kWalks; }
+  int walks_per_estimate() const { return family_ == Family::general ? walk::Stack::kWalks : walk::kLanes; }
 
   // Film reflectance from outside. Exact.
   Rgb film_reflectance(double cos_exterior) const;
@@ -92,6 +93,11 @@ class Pfmc {
   Pfmc at(std::span<const Pick> picks) const;
 
  private:
+  // What estimates the rest.
+  enum class Family { plain, facets, general };
+  static Family family_of(const Material& material);
+  void forecast_visits();
+
   using Powers = walk::Spectrum<double>;
   double mean_power(const Powers& powers) const;
   Rgb fold(const double* values) const;
@@ -102,13 +108,14 @@ class Pfmc {
 
   void add_stack_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, std::span<Rgb> sums,
                       Technique technique) const;
+  void add_facets_rest(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* values) const;
   std::optional<BsdfSample> sample_stack(const Vec3& wo, Rng& rng, const Pfmc& below) const;
   double estimate_stack_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const;
   walk::Stack stack(walk::Carrying carrying) const;
 
   walk::Layers layers_;
   walk::StackLayers stack_;
-  bool is_plain_;
+  Family family_;
   std::array<Rgb, kMostWavelengths> weight_;
   std::array<double, kMostWavelengths> importance_;
   Ggx ggx_;

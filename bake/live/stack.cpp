@@ -12,6 +12,10 @@ constexpr int kRoom = 1024, kMostRays = 128;
 // A walk that has lost all but this of its power goes on by roulette.
 constexpr double kFaint = 0.15;
 
+// Of the choices at a facet that look at no power, the share that mirrors: what has passed is worth less than
+// its power to exits.
+constexpr double kFixedMirrors = 0.7;
+
 void scale(Powers& power, int count, double factor) {
   for (int j = 0; j < count; ++j) power[j] *= factor;
 }
@@ -136,10 +140,10 @@ bool Stack::pass(const Place& at, const Vec3& h, Place& passed) const {
 }
 
 // One facet: light goes on mirrored or passing, in proportion to the power that stays(place) says is still of
-// use there; `through`, the same for light that leaves facets as a whole behind (straight). `power` is
-// weighed for the choice alone.
+// use there; `through`, the same for light that leaves facets as a whole behind (straight); the share `fixed`
+// of the choice looks at no power. `power` is weighed for the choice alone.
 template <class Stays>
-Stack::Turn Stack::turn(Place& at, Powers& power, double through, Rng& rng, Stays stays) const {
+Stack::Turn Stack::turn(Place& at, Powers& power, double through, double fixed, Rng& rng, Stays stays) const {
   const Vec3 h = stack_.facets.sample_facet(at.travel, rng);
   Powers r;
   reflectances(at, -dot(at.travel, h), r);
@@ -152,12 +156,14 @@ Stack::Turn Stack::turn(Place& at, Powers& power, double through, Rng& rng, Stay
   share_r *= stays_r, share_t *= stays_t;
   const double sum = share_r + share_t;
   if (!(sum > 0)) return {Turn::lost, 0};
-  if (rng.uniform() * sum < share_r) {
-    for (int j = 0; j < count_; ++j) power[j] *= r[j] * (sum / share_r);
+  double chance_r = share_r / sum;
+  if (share_r > 0 && share_t > 0) chance_r = lerp(fixed, chance_r, kFixedMirrors);
+  if (rng.uniform() < chance_r) {
+    for (int j = 0; j < count_; ++j) power[j] *= r[j] / chance_r;
     at = mirrored;
     return {Turn::mirrored, stays_r};
   }
-  for (int j = 0; j < count_; ++j) power[j] *= (1 - r[j]) * (sum / share_t);
+  for (int j = 0; j < count_; ++j) power[j] *= (1 - r[j]) / (1 - chance_r);
   at = passed;
   return {Turn::passed, stays_t};
 }
@@ -174,7 +180,7 @@ bool Stack::wander(Place at, Powers& power, Vec3& travel, Rng& rng, OnPassing on
   };
   const double least = kFaint * total(power);
   for (bool only_passed = true;;) {
-    const Turn taken = turn(at, power, through, rng, stays);
+    const Turn taken = turn(at, power, through, 0, rng, stays);
     if (taken.kind == Turn::lost) return false;
     if (taken.kind == Turn::passed && layers_.straight) return true;
     only_passed = only_passed && taken.kind == Turn::passed;
@@ -197,17 +203,18 @@ void Stack::follow_facets(const Vec3& wi, const Exit* exits, int count, Rng& rng
   at.is_entry = true;
   Powers power;
   std::fill_n(power.begin(), count_, 1.0);
-  const double least = kFaint * total(power);
+  double least = 0;  // what stays after one facet is faint, and all that exits see
   bool only_passed = true;
   for (int order = 0;; ++order) {
     for (int k = 0; k < count; ++k) connect_facet(at, power, order, only_passed, exits[k], sums + k * count_);
     const Turn taken =
-        turn(at, power, 0, rng, [&](const Place& place) { return 1 - facets.escape_chance(place); });
+        turn(at, power, 0, 0.5, rng, [&](const Place& place) { return 1 - facets.escape_chance(place); });
     if (taken.kind == Turn::lost) return;
     only_passed = only_passed && taken.kind == Turn::passed;
     scale(power, count_, taken.stays);
     facets.fly_back(at, rng);
-    if (!survives(power, count_, total(power), least, rng)) return;
+    if (order == 0) least = kFaint * total(power);
+    if (!(total(power) > 0) || !survives(power, count_, total(power), least, rng)) return;
   }
 }
 
@@ -416,6 +423,19 @@ void Stack::add_unidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& r
   }
   if (layers_.product && !chance_) return;
   for (int k = 0; k < exits; ++k) add_base(light, leaving[k], kWalks * kWalks, sums + k * count_);
+}
+
+void Stack::add_facets(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const {
+  Exit exit[kMostExits];
+  for (int k = 0; k < exits; ++k) {
+    exit[k].wo = wo[k];
+    exit[k].rays = 0;
+    if (!layers_.straight) draw_exit(wo[k], exit[k], rng);
+  }
+  double found[kMostExits * kMostWavelengths];
+  std::fill_n(found, exits * count_, 0.0);
+  follow_facets(wi, exit, exits, rng, found);
+  for (int i = 0; i < exits * count_; ++i) sums[i] += found[i] * kWalks;  // connections are shares of so many
 }
 
 // A ray of the camera's walk through the slab: light that reaches `origin` against it is seen.

@@ -60,6 +60,9 @@ class Stack {
   void add_unidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const;
   void add_bidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const;
 
+  // The facets part alone, from one walk.
+  void add_facets(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const;
+
   // One walk from wo. `power` is its throughput (unless is_first); every turn is taken by its mean power.
   StackSample sample(const Vec3& wo, Powers& power, Rng& rng) const;
 
@@ -94,7 +97,7 @@ class Stack {
              OnPassing on_passing) const;
   bool reflect_below(Vec3& travel, bool is_camera, Powers& power, Rng& rng) const;
   template <class Stays>
-  Turn turn(Place& at, Powers& power, double through, Rng& rng, Stays stays) const;
+  Turn turn(Place& at, Powers& power, double through, double fixed, Rng& rng, Stays stays) const;
   template <class OnPassing>
   bool wander(Place at, Powers& power, Vec3& travel, Rng& rng, OnPassing on_passing) const;
   void follow_facets(const Vec3& wi, const Exit* exits, int count, Rng& rng, double* sums) const;

@@ -113,7 +113,7 @@ TEST(MultipleFacets, RestOverBlackAgreesWithThePlainWalk) {
       const auto expected = test::PlainFacetLayers(m, kNm).histogram(wi, grid, 300000, rng).cells();
       const Pfmc pfmc(m);
       for (const Technique technique : kTechniques) {
-        const auto found = test::integrate_cells(grid, 300, rng, [&](const Vec3& wo, Rng& r) {
+        const auto found = test::integrate_cells(grid, 1500, rng, [&](const Vec3& wo, Rng& r) {
           return pfmc.estimate_rest(wo, wi, r, technique) * wo.z;
         });
         EXPECT_GT(test::least_p_value(expected, found), test::sidak(1e-3, 48))

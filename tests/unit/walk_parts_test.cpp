@@ -37,6 +37,19 @@ TEST(Packet, FunctionsAgreeWithTheStandardLibrary) {
   }
 }
 
+TEST(Packet, LogarithmAgreesWithTheStandardLibrary) {
+  Rng rng(4, 0);
+  for (int k = 0; k < 2000; ++k) {
+    const double scale = std::pow(0.5, k % 60);
+    const auto x = values_of(lanes_of([&](int) { return scale * (1 - rng.uniform()); }));
+    const auto logarithms = values_of(log_of_share(Lanes::load(x.data())));
+    for (int lane = 0; lane < kLanes; ++lane)
+      EXPECT_NEAR(logarithms[lane], std::log(x[lane]), 1e-15 + 2e-15 * std::abs(std::log(x[lane])));
+  }
+  EXPECT_EQ(values_of(log_of_share(Lanes(1)))[0], 0);
+  EXPECT_LT(values_of(log_of_share(Lanes(0)))[0], -700);
+}
+
 TEST(Packet, ExponentialAtItsEnds) {
   const auto values = values_of(exp_negative(lanes_of([](int lane) { return lane == 0 ? 0 : -1e9 * lane; })));
   EXPECT_EQ(values[0], 1);

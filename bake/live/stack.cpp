@@ -196,26 +196,40 @@ bool Stack::wander(Place at, Powers& power, Vec3& travel, Rng& rng, OnPassing on
   }
 }
 
-// Facets part: light from wi that stays among facets, and at each of them what the exits see of it.
+// Facets part by one technique: light from wi that stays among facets, and at each of them what the exits see
+// of it.
 void Stack::follow_facets(const Vec3& wi, const Exit* exits, int count, Rng& rng, double* sums) const {
   const Microsurface& facets = stack_.facets;
-  Place at = facets.first_facet(Side::outside, -wi, rng);
+  FacetPath path{facets.first_facet(Side::outside, -wi, rng)};
+  Place& at = path.at;
   at.is_entry = true;
-  Powers power;
-  std::fill_n(power.begin(), count_, 1.0);
-  double least = 0;  // what stays after one facet is faint, and all that exits see
-  bool only_passed = true;
-  for (int order = 0;; ++order) {
-    for (int k = 0; k < count; ++k) connect_facet(at, power, order, only_passed, exits[k], sums + k * count_);
-    const Turn taken =
-        turn(at, power, 0, 0.5, rng, [&](const Place& place) { return 1 - facets.escape_chance(place); });
+  std::fill_n(path.power.begin(), count_, 1.0);
+  double origin = 0, least = 0;  // what stays after one facet is faint, and all that exits see
+  for (;; ++path.order) {
+    for (int k = 0; k < count; ++k) connect_facet(path, exits[k], sums + k * count_);
+    const Vec3 arrived = at.travel;
+    const Turn taken = turn(at, path.power, 0, 0.5, rng,
+                            [&](const Place& place) { return 1 - facets.escape_chance(place); });
     if (taken.kind == Turn::lost) return;
-    only_passed = only_passed && taken.kind == Turn::passed;
-    scale(power, count_, taken.stays);
+    if (taken.kind == Turn::mirrored && path.only_passed) {
+      path.only_passed = false;
+      path.other = meet_exit({at.side, -at.travel, at.depth}, -arrived, origin).factor;
+    }
+    origin = at.depth;
+    scale(path.power, count_, taken.stays);
     facets.fly_back(at, rng);
-    if (order == 0) least = kFaint * total(power);
-    if (!(total(power) > 0) || !survives(power, count_, total(power), least, rng)) return;
+    if (path.order == 0) least = kFaint * total(path.power);
+    if (!(total(path.power) > 0) || !survives(path.power, count_, total(path.power), least, rng)) return;
   }
+}
+
+// Both techniques, from either end: a path is connected at the last facet that mirrors or at the first.
+void Stack::add_facets(const Vec3& wi, const Exit* exits, int count, Rng& rng, double* sums) const {
+  follow_facets(wi, exits, count, rng, sums);
+  if (chance_) return;  // the first facet of a sampled walk is taken by other chances than the last
+  Exit entry;
+  draw_rays(wi, entry, rng);
+  for (int k = 0; k < count; ++k) follow_facets(exits[k].wo, &entry, 1, rng, sums + k * count_);
 }
 
 void Stack::attenuate(double length, Powers& power) const {
@@ -299,40 +313,56 @@ void Stack::draw_exit(const Vec3& wo, Exit& exit, Rng& rng) const {
   exit.up = -exit.up;
 }
 
+// What the facets part needs of an exit.
+void Stack::draw_rays(const Vec3& wo, Exit& exit, Rng& rng) const {
+  exit.wo = wo;
+  exit.rays = 0;
+  if (!layers_.straight) draw_exit(wo, exit, rng);
+}
+
 // The light's way in, to its first arrival below; and, apart from it, the facets part of all exits.
 bool Stack::draw_entry(const Vec3& wi, const Exit* exits, int count, Powers& power, Vec3& travel, Rng& rng,
                        double* sums) const {
-  if (stack_.multiple) follow_facets(wi, exits, count, rng, sums);
+  if (stack_.multiple) add_facets(wi, exits, count, rng, sums);
   return enter(wi, false, power, travel, rng, [](const Place&, const Powers&) {});
 }
 
-// Facets part: light about to meet a facet at `at`, which mirrors it towards an exit or lets it pass there.
-void Stack::connect_facet(const Place& at, const Powers& power, int order, bool only_passed, const Exit& exit,
-                          double* sums) const {
-  if (at.side == Side::outside && order > 0) mirror_towards(at, power, exit.wo, 0, nullptr, sums);
+// Facets part: the facet that light is about to meet mirrors it towards an exit or lets it pass there.
+void Stack::connect_facet(const FacetPath& path, const Exit& exit, double* sums) const {
+  const Place& at = path.at;
+  if (at.side == Side::outside && path.order > 0) mirror_towards(path, exit.wo, 0, nullptr, sums);
   for (int k = 0; k < exit.rays; ++k) {
     const Place ray = exit.place(k);
-    if (ray.side == at.side)
-      mirror_towards(at, power, -ray.travel, ray.depth, &exit.ray_power[k * count_], sums);
+    if (ray.side == at.side) mirror_towards(path, -ray.travel, ray.depth, &exit.ray_power[k * count_], sums);
   }
-  if (at.side == Side::inside && only_passed && layers_.bends) pass_towards(at, power, exit.wo, sums);
+  if (at.side == Side::inside && path.only_passed && layers_.bends) pass_towards(path, exit.wo, sums);
 }
 
-// Along y to what lies at the depth `origin` and carries `beyond` (null: 1).
-void Stack::mirror_towards(const Place& at, const Powers& power, const Vec3& y, double origin,
-                           const double* beyond, double* sums) const {
-  const Vec3 h = normalize(y - at.travel);
+// By a facet at `at` along y to what lies at the depth `origin`, without the reflectance, 1/sr.
+Stack::Meeting Stack::meet_exit(const Place& at, const Vec3& y, double origin) const {
   const double visible = visibility(stack_.facets, y, at.depth, origin);
-  if (visible == 0 || h.z <= 0) return;
+  if (visible == 0) return {0, 0};
+  const Vec3 h = normalize(y - at.travel);
+  if (h.z <= 0) return {0, 0};
+  return {stack_.facets.mirror_density(at.travel, h) * visible / std::abs(y.z), dot(y, h)};
+}
+
+// What carries `beyond` (null: 1) is at the depth `origin`.
+void Stack::mirror_towards(const FacetPath& path, const Vec3& y, double origin, const double* beyond,
+                           double* sums) const {
+  const Meeting met = meet_exit(path.at, y, origin);
+  if (met.factor == 0) return;
   Powers r;
-  reflectances(at, dot(y, h), r);
-  const double factor = stack_.facets.mirror_density(at.travel, h) * visible / std::abs(y.z) *
-                        (at.side == Side::inside ? layers_.radiance_scale : 1) / kWalks;
-  for (int j = 0; j < count_; ++j) sums[j] += power[j] * r[j] * (beyond ? beyond[j] : 1) * factor;
+  reflectances(path.at, met.cosine, r);
+  const double weight = path.only_passed ? 0.5 : path.other / (path.other + met.factor);
+  const double factor = met.factor * (chance_ ? 1 : weight) *
+                        (path.at.side == Side::inside ? layers_.radiance_scale : 1) / kWalks;
+  for (int j = 0; j < count_; ++j) sums[j] += path.power[j] * r[j] * (beyond ? beyond[j] : 1) * factor;
 }
 
 // From the inside out along wo, by refraction.
-void Stack::pass_towards(const Place& at, const Powers& power, const Vec3& wo, double* sums) const {
+void Stack::pass_towards(const FacetPath& path, const Vec3& wo, double* sums) const {
+  const Place& at = path.at;
   const double ratio = 1 / layers_.index_ratio;
   Vec3 h = wo + ratio * at.travel;
   if (h.z < 0) h = -h;
@@ -341,8 +371,9 @@ void Stack::pass_towards(const Place& at, const Powers& power, const Vec3& wo, d
   const double visible = visibility(stack_.facets, wo, depth_from_other_side(at.depth), 0);
   Powers r;
   reflectances(at, -dot(at.travel, h), r);
-  const double factor = stack_.facets.passing_density(at.travel, h, wo, ratio) * visible / (wo.z * kWalks);
-  for (int j = 0; j < count_; ++j) sums[j] += power[j] * (1 - r[j]) * factor;
+  const double factor = stack_.facets.passing_density(at.travel, h, wo, ratio) * visible *
+                        (chance_ ? 1 : 0.5) / (wo.z * kWalks);
+  for (int j = 0; j < count_; ++j) sums[j] += path.power[j] * (1 - r[j]) * factor;
 }
 
 // Slab part: light that scatters at `depth`, towards what lies at the depth `origin` against y and carries
@@ -427,14 +458,10 @@ void Stack::add_unidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& r
 
 void Stack::add_facets(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const {
   Exit exit[kMostExits];
-  for (int k = 0; k < exits; ++k) {
-    exit[k].wo = wo[k];
-    exit[k].rays = 0;
-    if (!layers_.straight) draw_exit(wo[k], exit[k], rng);
-  }
+  for (int k = 0; k < exits; ++k) draw_rays(wo[k], exit[k], rng);
   double found[kMostExits * kMostWavelengths];
   std::fill_n(found, exits * count_, 0.0);
-  follow_facets(wi, exit, exits, rng, found);
+  add_facets(wi, exit, exits, rng, found);
   for (int i = 0; i < exits * count_; ++i) sums[i] += found[i] * kWalks;  // connections are shares of so many
 }
 

@@ -73,6 +73,17 @@ class Stack {
   struct CameraRay;
   struct CameraVisit;
   struct PairedLightVisit;
+  // Light that wanders from facet to facet.
+  struct FacetPath {
+    Place at;
+    Powers power{};
+    int order = 0;            // facets met before
+    bool only_passed = true;  // none of them has mirrored
+    double other = 0;  // else: the factor of meet_exit() there, had the path been made from its other end
+  };
+  struct Meeting {
+    double factor, cosine;
+  };
   struct Turn {
     enum Kind { lost, mirrored, passed } kind;
     double stays;
@@ -118,11 +129,13 @@ class Stack {
   void draw_exit(const Vec3& wo, Exit& exit, Rng& rng) const;
   bool draw_entry(const Vec3& wi, const Exit* exits, int count, Powers& power, Vec3& travel, Rng& rng,
                   double* sums) const;
-  void connect_facet(const Place& at, const Powers& power, int order, bool only_passed, const Exit& exit,
-                     double* sums) const;
-  void mirror_towards(const Place& at, const Powers& power, const Vec3& y, double origin,
-                      const double* beyond, double* sums) const;
-  void pass_towards(const Place& at, const Powers& power, const Vec3& wo, double* sums) const;
+  void draw_rays(const Vec3& wo, Exit& exit, Rng& rng) const;
+  void add_facets(const Vec3& wi, const Exit* exits, int count, Rng& rng, double* sums) const;
+  void connect_facet(const FacetPath& path, const Exit& exit, double* sums) const;
+  Meeting meet_exit(const Place& at, const Vec3& y, double origin) const;
+  void mirror_towards(const FacetPath& path, const Vec3& y, double origin, const double* beyond,
+                      double* sums) const;
+  void pass_towards(const FacetPath& path, const Vec3& wo, double* sums) const;
   void scatter_towards(double depth, const Vec3& travel, const Powers& power, const Vec3& y, double origin,
                        const Powers& beyond, double others, double* sums) const;
   void add_base(const Powers& light, const Powers& camera, double walks, double* sums) const;

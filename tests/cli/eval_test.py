@@ -243,7 +243,10 @@ class LiveRefusals(EvalTest):
             "absorption_per_nm": ("-0.1", "nan", "1e4"),
             "pigment_thickness_nm": ("-2", "nan", "inf"),
             "albedo": ("1.01", "-0.1", "nan", "0.1;0.2", "0.1;0.2;1.3", "0.1;0.2;0.3;0.4", "red", "0.1;;0.3", ""),
-            "roughness": ("1.01", "-0.1", "nan", "0.1;0.2", "0.1;0.1;0.1", "0.0001", "rough", ""),
+            "roughness": ("1.01", "-0.1", "nan", "0;0.2", "0.1;0.1;0.1", "0.0001", "rough", ""),
+            "scattering_per_nm": ("-0.1", "nan", "1e4"),
+            "anisotropy": ("1", "-1", "nan"),
+            "microfacet": ("both", "", "1"),
             "transmission": ("sideways", "1", "", "Refract"),
             "absorption_path": ("longest", "", "0"),
         }

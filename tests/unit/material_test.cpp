@@ -32,7 +32,10 @@ TEST(Material, TextRoundTripOfEveryKey) {
   a.absorption_per_nm = 0.7;
   a.pigment_thickness_nm = 3;
   a.albedo = {0.1, 0.2, 0.3};
-  a.roughness = 0.45;
+  a.scattering_per_nm = 0.6;
+  a.anisotropy = -0.4;
+  a.roughness = {0.45, 0.2};
+  a.microfacet = Microfacet::multiple;
   Material b;
   for (const auto& key : material_keys()) {
     EXPECT_NE(get_text(a, key), get_text(b, key)) << key;  // each key is really set by the loop
@@ -43,7 +46,8 @@ TEST(Material, TextRoundTripOfEveryKey) {
   EXPECT_EQ(b.albedo, Rgb(0.1, 0.2, 0.3));
   EXPECT_EQ(b.transmission, Transmission::straight);
   EXPECT_EQ(b.absorption_path, AbsorptionPath::product);
-  EXPECT_EQ(b.roughness, 0.45);
+  EXPECT_EQ(b.microfacet, Microfacet::multiple);
+  EXPECT_EQ(b.roughness, Roughness(0.45, 0.2));
 }
 
 TEST(Material, OneAlbedoMeansGrey) {
@@ -68,7 +72,7 @@ TEST(Material, RefusalNamesKeyFoundAndAllowed) {
 
 TEST(Material, IntervalsAreClosed) {
   for (const auto& key : material_keys()) {
-    if (key == "transmission" || key == "absorption_path") continue;
+    if (key == "transmission" || key == "absorption_path" || key == "microfacet") continue;
     const Interval allowed = allowed_interval(key);
     EXPECT_LT(allowed.low, allowed.high) << key;
     EXPECT_EQ(refusal(key, std::to_string(allowed.low)), "accepted") << key;
@@ -86,6 +90,17 @@ TEST(Material, RoughnessIsZeroOrAtLeastTheLeast) {
   EXPECT_EQ(refusal("roughness", "0.2;0.3"), "accepted");
   EXPECT_THAT(refusal("roughness", "0;0.3"), HasSubstr("two such values"));
   EXPECT_THAT(refusal("roughness", "0.1;0.2;0.3"), HasSubstr("2 separated by ';'"));
+}
+
+TEST(Material, ScatteringGoesWithSumAndHasALimit) {
+  Material m;
+  m.scattering_per_nm = 1;
+  EXPECT_FALSE(m.defect());
+  m.absorption_path = AbsorptionPath::product;
+  EXPECT_THAT(m.defect()->message(), AllOf(HasSubstr("'absorption_path'"), HasSubstr("allowed: sum")));
+  m.absorption_path = AbsorptionPath::sum;
+  m.pigment_thickness_nm = 101;
+  EXPECT_THAT(m.defect()->message(), AllOf(HasSubstr("'scattering_per_nm'"), HasSubstr("up to 100")));
 }
 
 TEST(Material, RefusedTextLeavesTheMaterialAlone) {

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <limits>
 #include <map>
+#include <span>
 
 #include "bake/cell.h"
 #include "bake/film_tables.h"
@@ -60,27 +61,36 @@ struct Row {
   std::uint64_t estimates = 0;
 };
 
-Row bake_row(const Pfmc& model, Technique technique, const Vec3& wi, const std::vector<Vec3>& wo,
-             double noise, Rng rng) {
+// Appends the values of the directions that share walks: they go on until all of them are known.
+void bake_together(const Pfmc& model, Technique technique, const Vec3& wi, std::span<const Vec3> wo,
+                   double noise, Rng& rng, Row& row) {
   std::vector<Cell> cells(wo.size());
   std::vector<Rgb> estimate(wo.size());
-  Row row;
-  for (std::uint64_t target = kFirstBatch;; target *= 2) {
-    for (; row.estimates < target; ++row.estimates) {
+  std::uint64_t estimates = 0;
+  const auto is_known = [&](const Cell& c) { return c.is_known(noise, static_cast<double>(estimates)); };
+  for (std::uint64_t target = kFirstBatch; target <= kMostEstimates; target *= 2) {
+    for (; estimates < target; ++estimates) {
       std::fill(estimate.begin(), estimate.end(), Rgb());
       model.add_rest(wi, wo, rng, estimate, technique);
       for (std::size_t k = 0; k < wo.size(); ++k) cells[k].add(estimate[k]);
     }
-    const auto count = static_cast<double>(row.estimates);
-    if (row.estimates < kMostEstimates &&
-        !std::all_of(cells.begin(), cells.end(), [&](const Cell& c) { return c.is_known(noise, count); }))
-      continue;
-    for (const Cell& cell : cells) {
-      row.value.push_back(cell.mean_of(count));
-      row.standard_error.push_back(cell.standard_error(count));
-    }
-    return row;
+    if (std::all_of(cells.begin(), cells.end(), is_known)) break;
   }
+  for (const Cell& cell : cells) {
+    row.value.push_back(cell.mean_of(static_cast<double>(estimates)));
+    row.standard_error.push_back(cell.standard_error(static_cast<double>(estimates)));
+  }
+  row.estimates += estimates;
+}
+
+Row bake_row(const Pfmc& model, Technique technique, const Vec3& wi, const std::vector<Vec3>& wo,
+             double noise, Rng rng) {
+  Row row;
+  const std::size_t together = std::min(model.exits_per_walk(), wo.size());
+  for (std::size_t first = 0; first < wo.size(); first += together)
+    bake_together(model, technique, wi, std::span(wo).subspan(first, std::min(together, wo.size() - first)),
+                  noise, rng, row);
+  return row;
 }
 
 // Cells of one parameter node whose values are equal because the surface is its own mirror image, because

@@ -19,7 +19,7 @@ struct Kernels {
   void (*returns)(const Layers& layers, Rng& rng, double* sums);
   // The film at one cosine and all wavelengths; writes up to kMostWavelengths.
   void (*reflectances)(const FilmSide& film, const FilmPhases& phases, double cosine, double* r);
-  // power[j] *= exp(-tau[j] length), j < count; writes up to kMostWavelengths.
+  // power[j] *= exp(-tau[j] length), j < count; reads kMostWavelengths of tau.
   void (*attenuate)(const double* tau, double length, int count, double* power);
 };
 

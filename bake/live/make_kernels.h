@@ -41,9 +41,17 @@ SUNBEAM_FLATTEN void reflectances(const FilmSide& film, const FilmPhases& phases
 template <class Arch>
 SUNBEAM_FLATTEN void attenuate(const double* tau, double length, int count, double* power) {
   using Batch = xsimd::batch<double, Arch>;
-  for (int j = 0; j < count; j += static_cast<int>(Batch::size))
-    (Batch::load_unaligned(power + j) * exp_negative(Batch::load_unaligned(tau + j) * Batch(-length)))
-        .store_unaligned(power + j);
+  constexpr int kSize = static_cast<int>(Batch::size);
+  const auto attenuated = [&](const double* p, int j) {
+    return Batch::load_unaligned(p) * exp_negative(Batch::load_unaligned(tau + j) * Batch(-length));
+  };
+  int j = 0;
+  for (; j + kSize <= count; j += kSize) attenuated(power + j, j).store_unaligned(power + j);
+  if (j == count) return;
+  double last[kSize]{};
+  for (int k = 0; j + k < count; ++k) last[k] = power[j + k];
+  attenuated(last, j).store_unaligned(last);
+  for (int k = 0; j + k < count; ++k) power[j + k] = last[k];
 }
 
 }  // namespace sunbeam::walk

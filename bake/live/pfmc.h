@@ -18,6 +18,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -40,6 +41,11 @@ class Pfmc {
   explicit Pfmc(const Material& material) : Pfmc(material, Wavelengths::rgb3(material)) {}
 
   int wavelengths() const { return layers_.count; }
+
+  // Directions wo that share a walk in add_rest().
+  std::size_t exits_per_walk() const {
+    return family_ == Family::plain ? std::numeric_limits<std::size_t>::max() : walk::Stack::kMostExits;
+  }
 
   int walks_per_estimate() const { return family_ == Family::general ? walk::Stack::kWalks : walk::kLanes; }
 

@@ -165,40 +165,5 @@ TEST(Anisotropic, EvalIsReciprocal) {
     }
 }
 
-// 4 modes x 3 functions of the direction at 4.5 standard errors: 8e-5.
-TEST(Anisotropic, ThroughputIsValueOverDensity) {
-  const auto weigh = [](const Vec3& w) { return Rgb(w.z, square(w.x), 1 + w.x); };
-  for (const auto& [name, material] : brushed({0.1, 0.4})) {
-    const LiveBsdf bsdf(material);
-    Rng rng(9, 0);
-    test::RgbMean by_sample, by_eval;
-    for (int k = 0; k < 100000; ++k) {
-      const auto s = bsdf.sample(kOut, rng);
-      by_sample.add(s && !s->is_dirac ? weigh(s->wi) * mean(s->throughput) : Rgb());
-    }
-    for (const Rgb& total : test::integrate_stratified(50, 24, rng, [&](const Vec3&wi, Rng&r) {
-           return weigh(wi) * (mean(bsdf.eval(kOut, wi, r)) * wi.z);
-         }))
-      by_eval.add(total);
-    test::expect_agree(by_sample, by_eval, 4.5, 0, name);
-  }
-}
-
-TEST(Anisotropic, SameStreamSameBits) {
-  for (const auto& [name, material, wavelengths] : test::in_both_spectra(brushed({0.1, 0.4}))) {
-    const LiveBsdf bsdf(material, wavelengths), again(material, wavelengths);
-    Rng a(10, 7), b(10, 7);
-    for (int i = 0; i < 100; ++i) {
-      EXPECT_EQ(bsdf.eval(kOut, kIn, a), again.eval(kOut, kIn, b)) << name;
-      EXPECT_EQ(bsdf.pdf(kOut, kIn, a), again.pdf(kOut, kIn, b)) << name;
-      const auto s = bsdf.sample(kOut, a), t = again.sample(kOut, b);
-      ASSERT_EQ(s.has_value(), t.has_value());
-      if (!s) continue;
-      EXPECT_EQ(s->throughput, t->throughput);
-    }
-    EXPECT_EQ(a.next(), b.next()) << name;  // and the same numbers were used up
-  }
-}
-
 }  // namespace
 }  // namespace sunbeam

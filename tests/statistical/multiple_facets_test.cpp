@@ -240,27 +240,5 @@ TEST(MultipleFacets, SamplesFollowThePdf) {
   }
 }
 
-// 3 surfaces x 2 modes x 3 functions of the direction at 4.5 standard errors: 1.2e-4.
-TEST(MultipleFacets, ThroughputIsValueOverDensity) {
-  const Vec3 wo = spherical_direction(0.9, 0.4);
-  const auto weigh = [](const Vec3& w) { return Rgb(w.z, square(w.x), 1 + w.x); };
-  for (const auto& roughness : {Roughness(0.3), Roughness(1), Roughness(0.2, 0.7)})
-    for (const auto transmission : kTransmissions) {
-      const Material m = facets(roughness, transmission, {0.9, 0.7, 0.4});
-      const LiveBsdf bsdf(m);
-      Rng rng(9, 0);
-      test::RgbMean by_sample, by_eval;
-      for (int k = 0; k < 50000; ++k) {
-        const auto s = bsdf.sample(wo, rng);
-        by_sample.add(s && !s->is_dirac ? weigh(s->wi) * mean(s->throughput) : Rgb());
-      }
-      for (const Rgb& total : test::integrate_stratified(40, 16, rng, [&](const Vec3&wi, Rng&r) {
-             return weigh(wi) * (mean(bsdf.eval(wo, wi, r)) * wi.z);
-           }))
-        by_eval.add(total);
-      test::expect_agree(by_sample, by_eval, 4.5, 0, describe(m));
-    }
-}
-
 }  // namespace
 }  // namespace sunbeam

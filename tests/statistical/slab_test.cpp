@@ -253,28 +253,6 @@ TEST(Slab, SamplesFollowThePdf) {
   }
 }
 
-// sample(), over its density, and eval() bring the same light to three functions of the direction. 6 x 3 at
-// 4.5 standard errors, 1.2e-4.
-TEST(Slab, ThroughputIsValueOverDensity) {
-  const Vec3 wo = spherical_direction(0.9, 0.4);
-  const auto weigh = [](const Vec3& w) { return Rgb(w.z, square(w.x), 1 + w.x); };
-  const auto all = slabs();
-  for (std::size_t i = 0; i < all.size(); i += 2) {
-    const LiveBsdf bsdf(all[i].material);
-    Rng rng(10, 0);
-    test::RgbMean by_sample, by_eval;
-    for (int k = 0; k < 50000; ++k) {
-      const auto s = bsdf.sample(wo, rng);
-      by_sample.add(s && !s->is_dirac ? weigh(s->wi) * mean(s->throughput) : Rgb());
-    }
-    for (const Rgb& total : test::integrate_stratified(30, 16, rng, [&](const Vec3&wi, Rng&r) {
-           return weigh(wi) * (mean(bsdf.eval(wo, wi, r)) * wi.z);
-         }))
-      by_eval.add(total);
-    test::expect_agree(by_sample, by_eval, 4.5, 0, all[i].name);
-  }
-}
-
 // Forward peaks do not make fireflies: of 2000 estimates none is above 25 times their mean, or 100 times at
 // grazing, where few and short connections make up the value (of 20000: 11 and 36).
 TEST(Slab, NoFireflies) {

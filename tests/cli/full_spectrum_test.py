@@ -2,9 +2,7 @@
 
 import json
 import math
-import struct
 import unittest
-import zlib
 
 import support
 
@@ -65,36 +63,6 @@ material = "skin"
 
 POINTS = "theta_i_deg,theta_o_deg,phi_deg\n30,40,180\n60,10,0\n"
 SAMPLES = ("--samples", "2000")
-
-
-def png_rows(content):
-    """Bytes of the rows of an 8-bit RGB PNG without interlacing (PNG specification, section 9)."""
-    width, height = struct.unpack(">II", content[16:24])
-    data, at = b"", 8
-    while at < len(content):
-        size, kind = struct.unpack(">I4s", content[at:at + 8])
-        data += content[at + 8:at + 8 + size] if kind == b"IDAT" else b""
-        at += 12 + size
-    data = zlib.decompress(data)
-    stride, above, rows = 3 * width, bytearray(3 * width), []
-    for y in range(height):
-        kind, line = data[y * (stride + 1)], bytearray(data[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
-        for x in range(stride):
-            left, up, corner = (line[x - 3], above[x], above[x - 3]) if x >= 3 else (0, above[x], 0)
-            paeth = min((left, up, corner), key=lambda v: abs(left + up - corner - v))
-            line[x] = (line[x] + (0, left, up, (left + up) // 2, paeth)[kind]) % 256
-        rows.append(line)
-        above = line
-    return rows
-
-
-def mean_linear(content):
-    """Mean linear colour of an sRGB picture."""
-    def linear(byte):
-        s = byte / 255
-        return s / 12.92 if s <= 0.04045 else ((s + 0.055) / 1.055) ** 2.4
-    values = [[linear(byte) for row in png_rows(content) for byte in row[c::3]] for c in range(3)]
-    return [sum(v) / len(v) for v in values]
 
 
 def colour(row, name):
@@ -195,7 +163,7 @@ class FullSpectrum(support.CliTest):
         """A uniform sky: the mean colours of the picture by table, by live model and by a Rec.709 table agree."""
         means = {}
         for name, options in {"table.exr": (), "live.exr": ("--material", "live"), "rec.exr": ("--table", "rec709.exr")}.items():
-            means[name] = mean_linear(self.picture(name, "--size", "16x16", *options))
+            means[name] = support.mean_linear(self.picture(name, "--size", "16x16", *options))
         self.assert_close(means["live.exr"], means["table.exr"], 0.05)
         self.assert_close(means["rec.exr"], means["table.exr"], 0.03)
         self.assertGreater(means["table.exr"][0], means["table.exr"][2])

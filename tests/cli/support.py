@@ -9,9 +9,11 @@ import io
 import os
 import pathlib
 import shutil
+import struct
 import subprocess
 import tempfile
 import unittest
+import zlib
 
 BINARY = os.environ["SUNBEAM_BINARY"]
 SOURCE_DIR = pathlib.Path(os.environ["SUNBEAM_SOURCE_DIR"])
@@ -85,6 +87,36 @@ def succeed_in(folder, *arguments, **options):
 
 def rows_of(text):
     return list(csv.DictReader(io.StringIO(text)))
+
+
+def png_rows(content):
+    """Bytes of the rows of an 8-bit RGB PNG without interlacing (PNG specification, section 9)."""
+    width, height = struct.unpack(">II", content[16:24])
+    data, at = b"", 8
+    while at < len(content):
+        size, kind = struct.unpack(">I4s", content[at:at + 8])
+        data += content[at + 8:at + 8 + size] if kind == b"IDAT" else b""
+        at += 12 + size
+    data = zlib.decompress(data)
+    stride, above, rows = 3 * width, bytearray(3 * width), []
+    for y in range(height):
+        kind, line = data[y * (stride + 1)], bytearray(data[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        for x in range(stride):
+            left, up, corner = (line[x - 3], above[x], above[x - 3]) if x >= 3 else (0, above[x], 0)
+            paeth = min((left, up, corner), key=lambda v: abs(left + up - corner - v))
+            line[x] = (line[x] + (0, left, up, (left + up) // 2, paeth)[kind]) % 256
+        rows.append(line)
+        above = line
+    return rows
+
+
+def mean_linear(content):
+    """Mean linear colour of an sRGB picture."""
+    def linear(byte):
+        s = byte / 255
+        return s / 12.92 if s <= 0.04045 else ((s + 0.055) / 1.055) ** 2.4
+    values = [[linear(byte) for row in png_rows(content) for byte in row[c::3]] for c in range(3)]
+    return [sum(v) / len(v) for v in values]
 
 
 class CliTest(unittest.TestCase):

@@ -209,6 +209,34 @@ TEST(MultipleFacets, SingleIsTheDefault) {
   }
 }
 
+// Values and noise are continuous where facets cease to bend light. 2 x 3 means at 4.5 standard errors, 4e-5.
+// Variances differ by a quarter.
+TEST(MultipleFacets, IndexMatchIsNoSpecialCase) {
+  const Vec3 wo = spherical_direction(0.3, 0), wi = spherical_direction(0.7, 2);
+  for (const double roughness : {0.1, 0.4}) {
+    const auto run = [&](double base_ior) {
+      Material m = facets(roughness, Transmission::refract, {0.9, 0.7, 0.4});
+      m.base_ior = base_ior;
+      const Pfmc pfmc(m);
+      Rng rng(8, 0);
+      test::RunningMean mean;
+      for (int i = 0; i < 20000; ++i) mean.add(pfmc.estimate_rest(wo, wi, rng).g);
+      return mean;
+    };
+    const auto at_one = run(1);
+    const std::pair<double, double> steps[] = {{1 + 1e-8, 0}, {1.0001, 0.002}, {1.01, 0.06}};
+    for (const auto& [base_ior, allowed] : steps) {
+      const auto near_one = run(base_ior);
+      EXPECT_NEAR(near_one.mean(), at_one.mean(),
+                  4.5 * std::hypot(near_one.std_error(), at_one.std_error()) + allowed * at_one.mean())
+          << base_ior << " roughness " << roughness;
+      EXPECT_LT(near_one.variance(), 2 * at_one.variance()) << base_ior << " roughness " << roughness;
+      EXPECT_GT(near_one.variance(), at_one.variance() / 2) << base_ior << " roughness " << roughness;
+    }
+    EXPECT_LT(at_one.std_error(), 0.003 * at_one.mean());
+  }
+}
+
 // 4 surfaces x 2 modes x 2 techniques x 3 channels at 4.5 standard errors (7e-6): 4e-4 in all.
 TEST(MultipleFacets, EvalIsReciprocal) {
   const Vec3 a = spherical_direction(0.4, 0), b = spherical_direction(1.2, 2);

@@ -54,9 +54,7 @@ class Stack {
   Stack(const Layers& layers, const StackLayers& stack, const double* importance, const Kernels& kernels,
         Carrying carrying = Carrying::power);
 
-  int count() const { return count_; }
-
-  // Adds an estimate of rest(wo[k], wi), 1/sr per wavelength, to sums[k * count + j].
+  // Adds an estimate of rest(wo[k], wi), 1/sr per wavelength (as a chance: one), to sums[k * count + j].
   void add_unidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const;
   void add_bidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const;
 
@@ -145,7 +143,7 @@ class Stack {
   const double* importance_;
   const Kernels& kernels_;
   bool chance_;
-  int count_;
+  int count_;  // of powers
   int camera_events_;
 };
 

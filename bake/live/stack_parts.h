@@ -39,7 +39,7 @@ struct Stack::Exit {
   // On its way, after each facet passed as long as none has mirrored.
   int rays;
   std::array<PackedPlace, kMostRays> ray;
-  std::array<double, kRoom> ray_power;  // count() for each
+  std::array<double, kRoom> ray_power;  // Stack's count_ for each
 
   Place place(int k) const { return {ray[k].side, {ray[k].x, ray[k].y, ray[k].z}, ray[k].depth}; }
 };

@@ -1,15 +1,14 @@
 #include "bake/live/film_interface.h"
 
+#include "bake/live/microsurface.h"
+
 namespace sunbeam {
 namespace {
 
-// Snell's law at a facet: the far-side counterpart of `w`, both on the side of `h` (h.w > 0 is kept).
+// The far-side counterpart of `w` if it leads away from the macro surface.
 std::optional<Vec3> refract(const Vec3& w, const Vec3& h, double index_ratio) {
-  const double cosine = dot(w, h);
-  const double far_cosine2 = 1 - square(index_ratio) * (1 - square(cosine));
-  if (far_cosine2 <= 0) return {};
-  const Vec3 far_side = normalize(index_ratio * w + (std::sqrt(far_cosine2) - index_ratio * cosine) * h);
-  if (far_side.z <= 0) return {};
+  Vec3 far_side;
+  if (!walk::refract(w, h, index_ratio, far_side) || far_side.z <= 0) return {};
   return far_side;
 }
 

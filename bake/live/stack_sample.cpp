@@ -72,7 +72,7 @@ Stack::Outcome Stack::meet_film(Side side, const Vec3& x, bool is_entry, Powers&
 // From below the film through pigment and base back up to it.
 Vec3 Stack::return_to_film(Vec3 travel, Powers& power, Rng& rng) const {
   const Slab& slab = stack_.slab;
-  double depth = 0, arrived = 1;
+  double depth = 0;
   for (;;) {
     const double cosine = std::max(std::abs(travel.z), 1e-12);
     const double to_border = (travel.z < 0 ? 1 - depth : depth) / cosine;
@@ -85,16 +85,15 @@ Vec3 Stack::return_to_film(Vec3 travel, Powers& power, Rng& rng) const {
     }
     if (travel.z > 0) return travel;
     depth = 1;
-    arrived = cosine;
     travel = sample_cosine({rng.uniform(), rng.uniform()});
     for (int j = 0; j < count_; ++j) power[j] *= layers_.albedo[j];
     if (layers_.product)
-      for (int j = 0; j < count_; ++j) power[j] *= std::exp(-layers_.tau[j] / (arrived * travel.z));
+      for (int j = 0; j < count_; ++j) power[j] *= std::exp(-layers_.tau[j] / (cosine * travel.z));
   }
 }
 
 StackSample Stack::sample(const Vec3& wo, Powers& power, Rng& rng) const {
-  for (int j = 0; j < count_; ++j) power[j] = 1;
+  std::fill_n(power.begin(), count_, 1.0);
   Outcome film = meet_film(Side::outside, -wo, true, power, rng);
   StackSample result;
   result.is_first = film.side == Side::outside && film.facets == 1;

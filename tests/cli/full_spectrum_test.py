@@ -33,33 +33,7 @@ tolerance_p99 = 0.3
 mode = "full"
 """
 
-SCENE = """\
-recipe = "full.toml"
-table = "full.exr"
-
-[camera]
-position = [0.0, -4.0, 0.0]
-look_at = [0.0, 0.0, 0.0]
-
-[render]
-width = 8
-height = 8
-spp = 64
-max_bounces = 2
-
-[environment]
-color = 1.0
-
-[[material]]
-name = "skin"
-type = "skin"
-
-[[object]]
-type = "sphere"
-center = [0.0, 0.0, 0.0]
-radius = 3.0
-material = "skin"
-"""
+SCENE = support.SKY_SPHERE_SCENE.format(name="full", spp=64, max_bounces=2, tangent_rotation_deg=0.0)
 
 POINTS = "theta_i_deg,theta_o_deg,phi_deg\n30,40,180\n60,10,0\n"
 SAMPLES = ("--samples", "2000")

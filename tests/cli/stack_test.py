@@ -35,35 +35,6 @@ STACKS = {
     "multiple": ('roughness = 0.5\nmicrofacet = "multiple"', 5, "unidirectional", 1),
 }
 
-SCENE = """\
-recipe = "{name}.toml"
-table = "{name}.exr"
-
-[camera]
-position = [0.0, -4.0, 0.0]
-look_at = [0.0, 0.0, 0.0]
-
-[render]
-width = 8
-height = 8
-spp = 256
-max_bounces = 1
-
-[environment]
-color = 1.0
-
-[[material]]
-name = "skin"
-type = "skin"
-tangent_rotation_deg = 30.0
-
-[[object]]
-type = "sphere"
-center = [0.0, 0.0, 0.0]
-radius = 3.0
-material = "skin"
-"""
-
 POINTS = "theta_i_deg,phi_i_deg,theta_o_deg,phi_deg\n30,0,40,180\n30,90,40,180\n60,20,10,70\n"
 
 
@@ -72,7 +43,8 @@ class Stack(support.CliTest):
     def prepare(cls):
         for name, (material, azimuths, estimator, _) in STACKS.items():
             cls.write(f"{name}.toml", RECIPE.format(material=material, azimuths=azimuths, estimator=estimator))
-            cls.write(f"{name}_scene.toml", SCENE.format(name=name))
+            cls.write(f"{name}_scene.toml", support.SKY_SPHERE_SCENE.format(
+                name=name, spp=256, max_bounces=1, tangent_rotation_deg=30.0))
             for form in ("exr", "vdb"):
                 support.succeed_in(cls.folder, "bake", f"{name}.toml", "-o", f"{name}.{form}")
 

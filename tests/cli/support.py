@@ -43,6 +43,36 @@ tolerance_median = 0.3
 tolerance_p99 = 1.0
 """
 
+# A sphere of skin under a constant sky, a few pixels: {name}.toml and its table {name}.exr.
+SKY_SPHERE_SCENE = """\
+recipe = "{name}.toml"
+table = "{name}.exr"
+
+[camera]
+position = [0.0, -4.0, 0.0]
+look_at = [0.0, 0.0, 0.0]
+
+[render]
+width = 8
+height = 8
+spp = {spp}
+max_bounces = {max_bounces}
+
+[environment]
+color = 1.0
+
+[[material]]
+name = "skin"
+type = "skin"
+tangent_rotation_deg = {tangent_rotation_deg}
+
+[[object]]
+type = "sphere"
+center = [0.0, 0.0, 0.0]
+radius = 3.0
+material = "skin"
+"""
+
 # With a black base nothing but the film remains: no walks to speak of.
 BLACK_BASE = ("--set", "material.albedo=0")
 

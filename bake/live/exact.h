@@ -29,7 +29,7 @@
 #include <vector>
 
 #include "bake/live/film_integrals.h"
-#include "bake/live/wavelengths.h"
+#include "sunbeam/wavelengths.h"
 
 namespace sunbeam {
 

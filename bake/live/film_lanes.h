@@ -10,8 +10,8 @@
 #include <array>
 
 #include "bake/live/packet.h"
-#include "bake/live/wavelengths.h"
 #include "bake/optics/thin_film.h"
+#include "sunbeam/wavelengths.h"
 
 namespace sunbeam::walk {
 

@@ -5,7 +5,7 @@
 
 #include "bake/live/film_lanes.h"
 #include "bake/live/guide.h"
-#include "bake/live/wavelengths.h"
+#include "sunbeam/wavelengths.h"
 
 namespace sunbeam::walk {
 

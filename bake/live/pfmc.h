@@ -25,9 +25,9 @@
 #include "bake/live/events.h"
 #include "bake/live/kernels.h"
 #include "bake/live/stack.h"
-#include "bake/live/wavelengths.h"
 #include "sunbeam/bsdf.h"
 #include "sunbeam/ggx.h"
+#include "sunbeam/wavelengths.h"
 
 namespace sunbeam {
 

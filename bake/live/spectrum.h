@@ -11,8 +11,8 @@
 #include <map>
 #include <string>
 
-#include "bake/live/wavelengths.h"
 #include "bake/optics/spectral_material.h"
+#include "sunbeam/wavelengths.h"
 
 namespace sunbeam {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "bake/live/wavelengths.h"
 #include "sunbeam/material.h"
+#include "sunbeam/wavelengths.h"
 
 namespace sunbeam::test {
 

@@ -9,32 +9,14 @@ namespace {
 
 constexpr std::size_t kMaxCells = std::size_t{1} << 32;
 
-// Corners of the cell around x and their weights; single-node axes and exact hits add none.
-struct Corners {
-  std::array<std::size_t, std::size_t{1} << NdArray::kMaxRank> offset;
-  std::array<double, std::size_t{1} << NdArray::kMaxRank> weight;
-  std::size_t count = 1;
-};
-
-Corners corners(const NdArray& array, std::span<const double> x) {
-  Corners result;
-  result.offset[0] = 0;
-  result.weight[0] = 1;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    const Bracket at = array.axes()[k].locate(x[k]);
-    const std::size_t lower = at.lower * array.stride(k), upper = at.upper * array.stride(k);
-    const std::size_t count = result.count;
-    if (at.upper_weight > 0) {
-      for (std::size_t c = 0; c < count; ++c) {
-        result.offset[count + c] = result.offset[c] + upper;
-        result.weight[count + c] = result.weight[c] * at.upper_weight;
-        result.weight[c] *= 1 - at.upper_weight;
-      }
-      result.count = 2 * count;
-    }
-    for (std::size_t c = 0; c < count; ++c) result.offset[c] += lower;
-  }
-  return result;
+// Calls visit(offset, weight) for every cell that a value at x is made of; exact hits have few.
+template <class F>
+void visit_cells(const NdArray& array, std::span<const double> x, std::size_t axis, std::size_t offset,
+                 double weight, F& visit) {
+  if (axis == x.size()) return visit(offset, weight);
+  const Stencil at = array.axes()[axis].stencil(x[axis]);
+  for (std::size_t k = 0; k < at.count; ++k)
+    visit_cells(array, x, axis + 1, offset + at.node[k] * array.stride(axis), weight * at.weight[k], visit);
 }
 
 }  // namespace
@@ -45,10 +27,10 @@ float round_to(Precision precision, double value) {
   return rounded + 0.0f;  // -0 becomes 0
 }
 
-NdArray::NdArray(std::string name, std::vector<Axis> axes, Precision precision)
-    : name_(std::move(name)), axes_(std::move(axes)), precision_(precision), cells_(1) {
+NdArray::NdArray(std::string name, std::vector<Axis> axes, Precision precision, std::size_t channels)
+    : name_(std::move(name)), axes_(std::move(axes)), precision_(precision), channels_(channels), cells_(1) {
   if (axes_.empty() || axes_.size() > kMaxRank)
-    throw Error("array '" + name_ + "': has " + std::to_string(axes_.size()) + " axes; allowed: 1 to 7");
+    throw Error("array '" + name_ + "': has " + std::to_string(axes_.size()) + " axes; allowed: 1 to 8");
   for (std::size_t k = axes_.size(); k-- > 0;) {
     const std::string defect = axes_[k].defect();
     if (!defect.empty()) throw Error("array '" + name_ + "': axis '" + axes_[k].name + "' " + defect);
@@ -56,30 +38,32 @@ NdArray::NdArray(std::string name, std::vector<Axis> axes, Precision precision)
     if (axes_[k].size() > kMaxCells / cells_) throw Error("array '" + name_ + "': has more than 2^32 cells");
     cells_ *= axes_[k].size();
   }
-  values_.resize(3 * cells_);
+  values_.resize(channels_ * cells_);
 }
 
 void NdArray::set(std::size_t cell, const Rgb& value) {
-  for (int c = 0; c < 3; ++c)
-    values_[3 * cell + static_cast<std::size_t>(c)] = round_to(precision_, value[c]);
+  for (std::size_t c = 0; c < channels_; ++c)
+    values_[channels_ * cell + c] = round_to(precision_, value[static_cast<int>(c)]);
 }
 
 Rgb NdArray::interpolate(std::span<const double> x) const {
-  const Corners near = corners(*this, x);
   Rgb sum;
-  for (std::size_t c = 0; c < near.count; ++c) sum += near.weight[c] * get(near.offset[c]);
+  auto add = [&](std::size_t offset, double weight) { sum += weight * get(offset); };
+  visit_cells(*this, x, 0, 0, 1, add);
   return sum;
 }
 
 NdArray NdArray::slice(std::span<const double> x) const {
-  const Corners near = corners(*this, x);
   NdArray result(name_, {axes_.begin() + static_cast<std::ptrdiff_t>(x.size()), axes_.end()},
-                 Precision::single_float);
-  for (std::size_t cell = 0; cell < result.cells(); ++cell) {
-    Rgb sum;
-    for (std::size_t c = 0; c < near.count; ++c) sum += near.weight[c] * get(near.offset[c] + cell);
-    result.set(cell, sum);
-  }
+                 Precision::single_float, channels_);
+  std::vector<double> sums(result.values_.size());
+  auto add = [&](std::size_t offset, double weight) {
+    const float* from = values_.data() + channels_ * offset;
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += weight * static_cast<double>(from[k]);
+  };
+  visit_cells(*this, x, 0, 0, 1, add);
+  for (std::size_t k = 0; k < sums.size(); ++k)
+    result.values_[k] = round_to(Precision::single_float, sums[k]);
   return result;
 }
 

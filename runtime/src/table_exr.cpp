@@ -1,6 +1,6 @@
 // Table <-> multi-part OpenEXR. One part an array: x runs over the last two axes, y over all others
-// (row-major), channels R, G, B. The first part carries the table's attributes, every part the axes of its
-// array.
+// (row-major), channels R, G, B, or Y alone for single numbers. The first part carries the table's
+// attributes, every part the axes of its array.
 #include <ImfArray.h>
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -45,13 +45,18 @@ std::vector<Imath::half> as_halves(const NdArray& array) {
   return {array.values().begin(), array.values().end()};
 }
 
-Imf::FrameBuffer frame_buffer(void* values, Imf::PixelType type, std::size_t value_bytes, int width) {
+std::vector<std::string> channel_names(std::size_t channels) {
+  return channels == 1 ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
+}
+
+Imf::FrameBuffer frame_buffer(void* values, Imf::PixelType type, std::size_t value_bytes,
+                              std::size_t channels, int width) {
   Imf::FrameBuffer buffer;
   auto* base = static_cast<char*>(values);
-  const std::size_t pixel = 3 * value_bytes;
-  const char* const channels[] = {"R", "G", "B"};
-  for (std::size_t c = 0; c < 3; ++c)
-    buffer.insert(channels[c],
+  const std::size_t pixel = channels * value_bytes;
+  const auto names = channel_names(channels);
+  for (std::size_t c = 0; c < channels; ++c)
+    buffer.insert(names[c],
                   Imf::Slice(type, base + c * value_bytes, pixel, pixel * static_cast<std::size_t>(width)));
   return buffer;
 }
@@ -63,7 +68,8 @@ Imf::Header part_header(const NdArray& array, const Imath::Box2i& display_window
   header.setType(Imf::SCANLINEIMAGE);
   header.compression() = Imf::ZIP_COMPRESSION;
   const auto type = array.precision() == Precision::half_float ? Imf::HALF : Imf::FLOAT;
-  for (const char* channel : {"R", "G", "B"}) header.channels().insert(channel, Imf::Channel(type));
+  for (const auto& channel : channel_names(array.channels()))
+    header.channels().insert(channel, Imf::Channel(type));
   for (const auto& [key, value] : describe_axes(array.axes()))
     header.insert(kAttributePrefix + key, Imf::StringAttribute(value));
   return header;
@@ -74,10 +80,12 @@ void write_array(Imf::MultiPartOutputFile& file, int part, NdArray& array) {
   const ImageSize size = image_size(array);
   if (array.precision() == Precision::half_float) {
     auto halves = as_halves(array);
-    output.setFrameBuffer(frame_buffer(halves.data(), Imf::HALF, sizeof(Imath::half), size.width));
+    output.setFrameBuffer(
+        frame_buffer(halves.data(), Imf::HALF, sizeof(Imath::half), array.channels(), size.width));
     output.writePixels(size.height);
   } else {
-    output.setFrameBuffer(frame_buffer(array.values().data(), Imf::FLOAT, sizeof(float), size.width));
+    output.setFrameBuffer(
+        frame_buffer(array.values().data(), Imf::FLOAT, sizeof(float), array.channels(), size.width));
     output.writePixels(size.height);
   }
 }
@@ -118,17 +126,19 @@ Attributes string_attributes(const Imf::Header& header) {
 NdArray read_array(Imf::MultiPartInputFile& file, int part) {
   const Imf::Header& header = file.header(part);
   const std::string name = header.hasName() ? header.name() : "";
-  const Imf::Channel* channel = header.channels().findChannel("R");
+  const Imf::Channel* single = header.channels().findChannel("Y");
+  const Imf::Channel* channel = single ? single : header.channels().findChannel("R");
   if (!channel || (channel->type != Imf::HALF && channel->type != Imf::FLOAT))
-    throw Error("part '" + name + "' is not a table array: it has no half or float channel R");
+    throw Error("part '" + name + "' is not a table array: it has no half or float channel R or Y");
   NdArray array(name, parse_axes(string_attributes(header), name),
-                channel->type == Imf::HALF ? Precision::half_float : Precision::single_float);
+                channel->type == Imf::HALF ? Precision::half_float : Precision::single_float, single ? 1 : 3);
   const ImageSize size = image_size(array);
   const Imath::Box2i& window = header.dataWindow();
   if (window != Imath::Box2i({0, 0}, {size.width - 1, size.height - 1}))
     throw Error("array '" + name + "': the image size does not agree with the axes");
   Imf::InputPart input(file, part);
-  input.setFrameBuffer(frame_buffer(array.values().data(), Imf::FLOAT, sizeof(float), size.width));
+  input.setFrameBuffer(
+      frame_buffer(array.values().data(), Imf::FLOAT, sizeof(float), array.channels(), size.width));
   input.readPixels(0, size.height - 1);
   return array;
 }

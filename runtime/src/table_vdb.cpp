@@ -1,4 +1,4 @@
-// Table <-> OpenVDB. One Vec3f grid an array at index coordinates
+// Table <-> OpenVDB. One grid an array, of Vec3f, or of floats for single numbers, at index coordinates
 //   x = cell within the last two axes, y = cell within the two before, z = cell within the rest (row-major);
 // attributes of the table as file metadata, of an array as grid metadata. The background is 0, so a value
 // that is exactly 0 may be inactive: any accessor reads it right.
@@ -45,19 +45,30 @@ GridSize grid_size(const NdArray& array) {
   return {static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)};
 }
 
-using DenseArray = openvdb::tools::Dense<openvdb::Vec3f, openvdb::tools::LayoutXYZ>;
+openvdb::CoordBBox box_of(const NdArray& array) {
+  const GridSize size = grid_size(array);
+  return {openvdb::Coord(0), openvdb::Coord(size.x - 1, size.y - 1, size.z - 1)};
+}
 
 // LayoutXYZ has x fastest, as a row-major array has its last axis.
-DenseArray dense_view(NdArray& array) {
-  const GridSize size = grid_size(array);
-  const openvdb::CoordBBox box(openvdb::Coord(0), openvdb::Coord(size.x - 1, size.y - 1, size.z - 1));
-  return DenseArray(box, reinterpret_cast<openvdb::Vec3f*>(array.values().data()));
+template <class Grid>
+auto dense_view(NdArray& array) {
+  using Value = typename Grid::ValueType;
+  return openvdb::tools::Dense<Value, openvdb::tools::LayoutXYZ>(
+      box_of(array), reinterpret_cast<Value*>(array.values().data()));
+}
+
+template <class Grid>
+openvdb::GridBase::Ptr filled_grid(NdArray& array) {
+  const typename Grid::ValueType background(0);
+  auto grid = Grid::create(background);
+  openvdb::tools::copyFromDense(dense_view<Grid>(array), grid->tree(), background);
+  return grid;
 }
 
 openvdb::GridBase::Ptr to_grid(NdArray& array) {
-  auto grid = openvdb::Vec3SGrid::create(openvdb::Vec3f(0));
-  const DenseArray dense = dense_view(array);
-  openvdb::tools::copyFromDense(dense, grid->tree(), openvdb::Vec3f(0));
+  const auto grid =
+      array.channels() == 1 ? filled_grid<openvdb::FloatGrid>(array) : filled_grid<openvdb::Vec3SGrid>(array);
   grid->setName(array.name());
   grid->setSaveFloatAsHalf(array.precision() == Precision::half_float);
   for (const auto& [key, value] : describe_axes(array.axes()))
@@ -76,21 +87,30 @@ Attributes string_attributes(const openvdb::MetaMap& metadata) {
   return result;
 }
 
+template <class Grid>
+void copy_voxels(const Grid& grid, NdArray& array) {
+  const openvdb::CoordBBox active = grid.evalActiveVoxelBoundingBox();
+  if (!active.empty() && !box_of(array).isInside(active))
+    throw Error("grid '" + array.name() + "': its voxels do not agree with the axes");
+  auto dense = dense_view<Grid>(array);
+  openvdb::tools::copyToDense(grid, dense);
+}
+
 NdArray to_array(const openvdb::GridBase& base) {
-  const auto* grid = dynamic_cast<const openvdb::Vec3SGrid*>(&base);
-  if (!grid) throw Error("grid '" + base.getName() + "' is of type " + base.type() + "; expected vec3s");
+  const auto* colors = dynamic_cast<const openvdb::Vec3SGrid*>(&base);
+  const auto* numbers = dynamic_cast<const openvdb::FloatGrid*>(&base);
+  if (!colors && !numbers)
+    throw Error("grid '" + base.getName() + "' is of type " + base.type() + "; expected vec3s or float");
   const Attributes attributes = string_attributes(base);
   const auto precision = attributes.find("precision");
   if (precision == attributes.end()) throw Error("grid '" + base.getName() + "' has no sunbeam.precision");
   NdArray array(base.getName(), parse_axes(attributes, base.getName()),
-                precision->second == "half" ? Precision::half_float : Precision::single_float);
-  const GridSize size = grid_size(array);
-  const openvdb::CoordBBox box(openvdb::Coord(0), openvdb::Coord(size.x - 1, size.y - 1, size.z - 1));
-  const openvdb::CoordBBox active = grid->evalActiveVoxelBoundingBox();
-  if (!active.empty() && !box.isInside(active))
-    throw Error("grid '" + base.getName() + "': its voxels do not agree with the axes");
-  DenseArray dense = dense_view(array);
-  openvdb::tools::copyToDense(*grid, dense);
+                precision->second == "half" ? Precision::half_float : Precision::single_float,
+                colors ? 3 : 1);
+  if (colors)
+    copy_voxels(*colors, array);
+  else
+    copy_voxels(*numbers, array);
   return array;
 }
 

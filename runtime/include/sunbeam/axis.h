@@ -1,6 +1,7 @@
 // One axis of a table: its nodes, and how to find a value between them.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -9,9 +10,16 @@
 
 namespace sunbeam {
 
-// Interpolation is linear in the coordinate u(x) = (x - origin)^(1 / power); power 1 is plain linear, 2 and 3
-// suit quantities that behave like a square or cube root at the origin, which no node may lie below. A
-// periodic axis (period > 0) has its nodes in [first, first + period) and wraps round.
+// The nodes that a value between them is made of, and their weights, which add up to 1.
+struct Stencil {
+  std::size_t count = 1;
+  std::array<std::size_t, 4> node{};
+  std::array<double, 4> weight{1};
+};
+
+// Interpolation is by polynomials in the coordinate u(x) = (x - origin)^(1 / power); power 1 is x itself, 2
+// and 3 suit quantities that behave like a square or cube root at the origin, which no node may lie below. A
+// periodic axis (period > 0) has its nodes in [first, first + period) and wraps round; it is linear.
 struct Axis {
   std::string name;
   std::string unit;
@@ -19,6 +27,7 @@ struct Axis {
   double power = 1;
   double period = 0;
   double origin = 0;
+  bool is_cubic = false;  // through the four nearest nodes (Lagrange), as many as there are; else linear
 
   std::size_t size() const { return nodes.size(); }
   double low() const { return nodes.front(); }
@@ -27,6 +36,7 @@ struct Axis {
 
   // Clamps to the first or last node; wraps a periodic axis.
   Bracket locate(double x) const;
+  Stencil stencil(double x) const;
 
   // Empty if the axis is sound, else what is wrong with it.
   std::string defect() const;

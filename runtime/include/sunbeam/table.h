@@ -1,8 +1,9 @@
 // A baked material: BRDF data over (film thickness, base IOR, absorption) and two directions.
 //
-// What is exactly known stays in closed form and only the remainder is tabulated; with c_i, c_o the cosines
-// of the directions, m_i, m_o the cosines below the film, tau the optical depth, tau_s the scattering depth,
-// s = (n0/n2)^2 or 1 and kd albedo:
+// There are two encodings. Factored: see factors.h. Dense, for every material, below: what is exactly known
+// stays in closed form and only the remainder is tabulated; with c_i, c_o the cosines of the directions, m_i,
+// m_o the cosines below the film, tau the optical depth, tau_s the scattering depth, s = (n0/n2)^2 or 1 and
+// kd albedo:
 //
 //   f     = first + rest
 //   first = D(h) G2(wi, wo) R(wi.h) / (4 c_i c_o)            (smooth film: a Dirac of weight R(c_i) instead)
@@ -33,12 +34,13 @@
 
 #include "sunbeam/angles.h"
 #include "sunbeam/core/color_space.h"
+#include "sunbeam/factors.h"
 #include "sunbeam/material.h"
 #include "sunbeam/nd_array.h"
 
 namespace sunbeam {
 
-inline constexpr int kTableSchemaVersion = 1;
+inline constexpr int kTableSchemaVersion = 2;
 
 // The three parameters a table can vary, in the order of its axes.
 inline constexpr std::array<const char*, 3> kParameterNames = {"film_thickness_nm", "base_ior",
@@ -63,6 +65,8 @@ struct Table {
   Material material;  // fixed values, and defaults for the parameters
   Symmetry symmetry = Symmetry::isotropic;
 
+  Factors factors;  // encoding "factored", else empty; the arrays below are then empty
+
   // Axes (film_thickness_nm, base_ior, cos_theta); finer than the grid, as fringes need it.
   NdArray film_reflectance;
   NdArray film_transmittance;  // empty for a smooth film
@@ -86,7 +90,11 @@ struct Table {
   // Of all colours in the table, the albedo included. The three wavelengths of rgb3 are taken as rec709.
   ColorSpace color_space() const;
 
-  const Axis& parameter_axis(std::size_t k) const { return remainder.axes()[k]; }
+  bool is_factored() const { return !factors.empty(); }
+
+  const Axis& parameter_axis(std::size_t k) const {
+    return is_factored() ? factors.grid[k] : remainder.axes()[k];
+  }
 
   // T at a node or between: see above. `x` = (film_thickness_nm, base_ior, cos_theta).
   Rgb transmittance(const std::array<double, 3>& x) const;

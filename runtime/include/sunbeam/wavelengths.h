@@ -19,6 +19,7 @@ struct Wavelengths {
   std::vector<Rgb> weight;         // rgb = sum_k weight_k value_k
 
   std::size_t size() const { return nm.size(); }
+  bool operator==(const Wavelengths&) const = default;
 
   Rgb fold(std::span<const double> values) const {
     Rgb sum;

@@ -1,0 +1,84 @@
+#include "bake/optics/fringes.h"
+
+#include <array>
+
+#include "bake/optics/vector_clones.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr std::size_t kLanes = 8;
+constexpr double kLeastCosine2 = 1e-12;  // in the film, instead of 0/0; the powers are continuous there
+
+// Both polarisations' (q0 +- q2)^2, (b +- d)^2 / c1^2 and 2 q0 q2: see film_lanes.h.
+struct Polarisation {
+  double sum, difference, plus, minus, product;
+};
+
+Polarisation polarisation(double q0, double q2, double per_n, double d, double c1_squared) {
+  const double b = q0 * q2 * per_n;
+  return {square(q0 + q2), square(q0 - q2), square(b + d) / c1_squared, square(b - d) / c1_squared,
+          2 * q0 * q2};
+}
+
+// The phase of lane l at step i is first + (i kLanes + l) step.
+SUNBEAM_VECTOR_CLONES
+void add_waves(const Polarisation& s, const Polarisation& p, double first, double step, double* reflectance,
+               double* transmittance, std::size_t count) {
+  std::array<double, kLanes> re, im;
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    re[l] = std::cos(first + static_cast<double>(l) * step);
+    im[l] = std::sin(first + static_cast<double>(l) * step);
+  }
+  const double turn_re = std::cos(kLanes * step), turn_im = std::sin(kLanes * step);
+  for (std::size_t j = 0; j < count; j += kLanes) {
+    std::array<double, kLanes> r, t;
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const double c = 0.5 + 0.5 * re[l], sine = 0.5 - 0.5 * re[l];
+      const double ds = s.sum * c + s.plus * sine, dp = p.sum * c + p.plus * sine;
+      const double ns = s.difference * c + s.minus * sine, np = p.difference * c + p.minus * sine;
+      const double per_d = 1 / (ds * dp);
+      r[l] = 0.5 * (ns * dp + np * ds) * per_d;
+      t[l] = (s.product * dp + p.product * ds) * per_d;
+      const double next = re[l] * turn_re - im[l] * turn_im;
+      im[l] = re[l] * turn_im + im[l] * turn_re;
+      re[l] = next;
+    }
+    for (std::size_t l = 0; l < kLanes && j + l < count; ++l) {
+      reflectance[j + l] = r[l];
+      transmittance[j + l] = t[l];
+    }
+  }
+}
+
+}  // namespace
+
+void film_fringes(const ThinFilm& film, double cosine, double first, double step,
+                  std::span<double> reflectance, std::span<double> transmittance) {
+  const double c1_squared = refracted_cosine_squared(film.exterior_ior, film.film_ior, cosine);
+  const double c2_squared = refracted_cosine_squared(film.exterior_ior, film.base_ior, cosine);
+  if (c2_squared <= 0 || cosine <= 0) {
+    std::fill(reflectance.begin(), reflectance.end(), 1.0);
+    std::fill(transmittance.begin(), transmittance.end(), 0.0);
+    return;
+  }
+  if (c1_squared < 0) {  // evanescent in the film
+    for (std::size_t j = 0; j < reflectance.size(); ++j) {
+      ThinFilm thick = film;
+      thick.thickness_nm = first + static_cast<double>(j) * step;
+      const FilmPower power = airy(thick, cosine, Rgb(1));
+      reflectance[j] = power.reflectance.r;
+      transmittance[j] = power.transmittance.r;
+    }
+    return;
+  }
+  const double c1_2 = std::max(c1_squared, kLeastCosine2), c1 = std::sqrt(c1_2), c2 = std::sqrt(c2_squared);
+  const double n0 = film.exterior_ior, n1 = film.film_ior, n2 = film.base_ior;
+  // S^2 / c1^2 of film_lanes.h with b = q0 q2 c1 / q1 and d = q1 c1: here both carry their c1.
+  const Polarisation s = polarisation(n0 * cosine, n2 * c2, 1 / n1, n1 * c1_2, c1_2);
+  const Polarisation p = polarisation(cosine / n0, c2 / n2, n1, c1_2 / n1, c1_2);
+  const double phase = 4 * kPi * n1 * c1;
+  add_waves(s, p, phase * first, phase * step, reflectance.data(), transmittance.data(), reflectance.size());
+}
+
+}  // namespace sunbeam

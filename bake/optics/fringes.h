@@ -1,0 +1,15 @@
+// A thin film at many thicknesses in equal steps: the powers of thin_film.h with all but the phase shared.
+#pragma once
+
+#include <span>
+
+#include "bake/optics/thin_film.h"
+
+namespace sunbeam {
+
+// Reflectance and transmittance at thicknesses (first + j step) wavelengths, j = 0, 1, ...; the film's own
+// thickness does not matter. `cosine` as in airy(). Both spans have the same size.
+void film_fringes(const ThinFilm& film, double cosine, double first, double step,
+                  std::span<double> reflectance, std::span<double> transmittance);
+
+}  // namespace sunbeam

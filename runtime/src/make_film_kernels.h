@@ -1,0 +1,176 @@
+// Included by one source file for each instruction set. Everything here is local to that file, and no library
+// function is called: the linker must not take a copy from here for machines that cannot run it.
+//
+// Vectors are GCC's: four doubles hold four cosines, V as many wavelengths as it has floats.
+#pragma once
+
+#include "film_kernels.h"
+
+namespace sunbeam {
+namespace {
+
+using Floats4 = float __attribute__((vector_size(16)));
+using Floats8 = float __attribute__((vector_size(32)));
+using Floats16 = float __attribute__((vector_size(64)));
+
+constexpr int kCosines = 4;
+using Cosines = double __attribute__((vector_size(kCosines * sizeof(double))));
+using CosineBits = long long __attribute__((vector_size(kCosines * sizeof(double))));
+
+inline void square_root(const Cosines& x, Cosines& root) {
+  for (int i = 0; i < kCosines; ++i) root[i] = __builtin_sqrt(x[i]);
+}
+
+// All that does not depend on the wavelength, for four cosines. Where X < 0 (n1 between n0 and n2), sum + X
+// sin^2 would cancel at grazing, so it is written as (sum + X) - X cos^2.
+struct FilmAngles {
+  float offset;                       // of the phase in turns: 0 for sin^2, 1/2 for cos^2
+  Floats4 path, path_high, path_low;  // d sqrt(m_1), nm; the second has 12 bits, the third is the rest
+  Floats4 sum_s, sum_p;               // (n0 c0 + n2 c2)^2, (n2 c0 + n0 c2)^2; plus X for cos^2
+  Floats4 x_s, x_p;                   // X, X F_0 F_2; for cos^2 their negatives
+  Floats4 half_t;                     // t / 2
+};
+
+inline void prepare(const FilmMedia& media, const Cosines& c0, FilmAngles& angles) {
+  const double n0 = media.exterior_ior, n1 = media.film_ior, n2 = media.base_ior;
+  const double per_n0_squared = 1 / (n0 * n0), per_n1_squared = 1 / (n1 * n1), per_n2 = 1 / n2;
+  const Cosines q0 = n0 * c0, m0 = q0 * q0, beta_squared = n0 * n0 - m0;
+  const Cosines m1 = (n1 - n0) * (n1 + n0) + m0, m2 = (n2 - n0) * (n2 + n0) + m0;
+  const auto through = (m2 > 0) & (c0 > 1e-9);
+  const Cosines zero = {}, tiny = zero + 1e-20, safe_m1 = m1 > tiny ? m1 : tiny;
+
+  Cosines q1, q2;
+  square_root(safe_m1, q1);
+  square_root(through ? m2 : zero, q2);
+  const Cosines path = media.thickness_nm * q1;
+  const Cosines path_high = (Cosines)((CosineBits)path & ~((1LL << 41) - 1));
+  angles.path = __builtin_convertvector(path, Floats4);
+  angles.path_high = __builtin_convertvector(path_high, Floats4);
+  angles.path_low = __builtin_convertvector(path - path_high, Floats4);
+
+  const double film_difference = (n1 - n0) * (n1 + n0) * (n1 - n2) * (n1 + n2);
+  const bool is_between = film_difference < 0;
+  angles.offset = is_between ? 0.5f : 0;
+  const Cosines x_s = film_difference / safe_m1;
+  const Cosines brewster = (1 - beta_squared * (per_n1_squared + per_n0_squared)) *
+                           (1 - beta_squared * (per_n1_squared + per_n2 * per_n2));
+  const Cosines x_p = x_s * brewster;
+  const Cosines s = q0 + q2, p = n2 * c0 + n0 * per_n2 * q2;
+  const double in_sum = is_between ? 1 : 0, sign = is_between ? -1 : 1;
+  const Cosines one = zero + 1;  // keeps what reflects everything away from 0 / 0
+  angles.sum_s = __builtin_convertvector(through ? s * s + in_sum * x_s : one, Floats4);
+  angles.sum_p = __builtin_convertvector(through ? p * p + in_sum * x_p : one, Floats4);
+  angles.x_s = __builtin_convertvector(through ? sign * x_s : zero, Floats4);
+  angles.x_p = __builtin_convertvector(through ? sign * x_p : zero, Floats4);
+  angles.half_t = __builtin_convertvector(through ? 2 * q0 * q2 : zero, Floats4);
+}
+
+// Sums of the lanes that are equal modulo 4.
+inline Floats4 quarters(const Floats4& v) { return v; }
+inline Floats4 quarters(const Floats8& v) {
+  return __builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 4, 5, 6, 7);
+}
+inline Floats4 quarters(const Floats16& v) {
+  return quarters(__builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7) +
+                  __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15));
+}
+
+// The sums of the lanes of r, g and b; the last lane means nothing.
+inline Floats4 sums(const Floats4& r, const Floats4& g, const Floats4& b) {
+  const Floats4 rg = __builtin_shufflevector(r, g, 0, 4, 1, 5) + __builtin_shufflevector(r, g, 2, 6, 3, 7);
+  const Floats4 bb = b + __builtin_shufflevector(b, b, 2, 3, 2, 3);
+  return __builtin_shufflevector(rg, bb, 0, 1, 4, 4) + __builtin_shufflevector(rg, bb, 2, 3, 5, 5);
+}
+
+// V: as many wavelengths as the instruction set has floats in a vector.
+template <class V>
+struct FilmLanes {
+  static constexpr std::size_t kWidth = sizeof(V) / sizeof(float);
+
+  static V load(const float* from) {
+    V v;
+    __builtin_memcpy(&v, from, sizeof v);
+    return v;
+  }
+
+  static V absolute(const V& v) {
+    using Bits = decltype(v < v);
+    return (V)((Bits)v & 0x7fffffff);
+  }
+
+  // sin^2 or cos^2(pi u) for the turns u = path per, both in two parts. Only the part of u beyond its nearest
+  // integer matters, and that is exact: the product of the high parts has 24 bits.
+  static V squared_wave(const FilmAngles& angles, int i, const V& per_high, const V& per_low) {
+    constexpr float kRound = 0x1.8p23f;  // adding and subtracting it rounds to the nearest integer
+    const V high = angles.path_high[i] * per_high;
+    const V low = angles.path_low[i] * per_high + angles.path[i] * per_low;
+    const V integer = ((high + low) + kRound) - kRound;
+    const V f = angles.offset - absolute((high - integer) + low), g = f * f;
+    // sin(pi f) / f, minimax in g on |f| <= 1/2, relative error 4e-8 as rounded here.
+    const V sine =
+        f * (3.1415927410125732f +
+             g * (-5.167709827423096f +
+                  g * (2.550069570541382f + g * (-0.5982413291931152f + g * 0.07755855470895767f))));
+    return sine * sine;
+  }
+
+  // T_k / (t / 2) = 1 / D_s + 1 / D_p of kWidth wavelengths at cosine i.
+  static V passing(const FilmAngles& angles, int i, const V& per_high, const V& per_low) {
+    const V s = squared_wave(angles, i, per_high, per_low);
+    const V d_s = angles.sum_s[i] + angles.x_s[i] * s, d_p = angles.sum_p[i] + angles.x_p[i] * s;
+    return (d_s + d_p) / (d_s * d_p);
+  }
+
+  template <int kCount>
+  static void fold_some(const FilmWavelengths& wavelengths, const FilmAngles& angles, FloatRgb* rgb) {
+    V r[kCount] = {}, g[kCount] = {}, b[kCount] = {};
+    for (std::size_t k = 0; k < wavelengths.count; k += kWidth) {
+      const V per_high = load(&wavelengths.per_high[k]), per_low = load(&wavelengths.per_low[k]);
+      for (int i = 0; i < kCount; ++i) {
+        const V power = passing(angles, i, per_high, per_low);
+        r[i] += power * load(&wavelengths.weight[0][k]);
+        g[i] += power * load(&wavelengths.weight[1][k]);
+        b[i] += power * load(&wavelengths.weight[2][k]);
+      }
+    }
+    const FloatRgb& total = wavelengths.total_weight;
+    for (int i = 0; i < kCount; ++i) {
+      const Floats4 passed = angles.half_t[i] * sums(quarters(r[i]), quarters(g[i]), quarters(b[i]));
+      rgb[i] = {total.r - passed[0], total.g - passed[1], total.b - passed[2]};
+    }
+  }
+
+  static void fold(const FilmWavelengths& wavelengths, const FilmMedia& media, const float* cosines,
+                   std::size_t count, FloatRgb* rgb) {
+    FilmAngles angles;
+    for (; count >= kCosines; count -= kCosines, cosines += kCosines, rgb += kCosines) {
+      prepare(media, Cosines{cosines[0], cosines[1], cosines[2], cosines[3]}, angles);
+      fold_some<4>(wavelengths, angles, rgb);
+    }
+    if (count == 0) return;
+    const float first = cosines[0], last = cosines[count - 1];
+    prepare(media, Cosines{first, count > 1 ? cosines[1] : first, last, last}, angles);
+    if (count == 1) fold_some<1>(wavelengths, angles, rgb);
+    if (count == 2) fold_some<2>(wavelengths, angles, rgb);
+    if (count == 3) fold_some<3>(wavelengths, angles, rgb);
+  }
+
+  static void transmittances(const FilmWavelengths& wavelengths, const FilmMedia& media, float cosine,
+                             float* transmittance) {
+    FilmAngles angles;
+    prepare(media, Cosines{cosine, cosine, cosine, cosine}, angles);
+    for (std::size_t k = 0; k < wavelengths.padded; k += kWidth) {
+      const V t = angles.half_t[0] *
+                  passing(angles, 0, load(&wavelengths.per_high[k]), load(&wavelengths.per_low[k]));
+      __builtin_memcpy(transmittance + k, &t, sizeof t);
+    }
+  }
+};
+
+template <class V>
+constexpr FilmKernels film_kernels(const char* name) {
+  return {name, FilmLanes<V>::fold, FilmLanes<V>::transmittances};
+}
+
+}  // namespace
+}  // namespace sunbeam

@@ -13,13 +13,13 @@ namespace sunbeam {
 namespace {
 
 constexpr double kNodesPerFringe = 10;         // of arrival and returned: cubic to 4e-4 of a fringe
-constexpr double kExchangeNodesPerFringe = 5;  // most of exchange has no fringes
+constexpr double kExchangeNodesPerFringe = 3;  // most of exchange has no fringes
 constexpr std::size_t kLeastFringeNodes = 6;
 constexpr std::size_t kAlbedoNodes = 3;           // where wavelengths differ; the series in kd converges fast
 constexpr std::size_t kDepthNodesOfOneValue = 5;  // where only wavelengths make depths differ
 constexpr double kLowestCosine = 1e-3;
 constexpr std::size_t kReplicates = 4;    // independent estimates, whose spread is the noise
-constexpr std::size_t kFacetStrata = 32;  // each way, of a replicate
+constexpr std::size_t kFacetStrata = 64;  // each way, of a replicate
 constexpr std::size_t kUpStrata = 64;     // over the base's cosine^2, with kReturnStrata facets each way
 constexpr std::size_t kReturnStrata = 16;
 constexpr std::size_t kSmoothUpStrata = 4096;
@@ -134,7 +134,8 @@ Axis depths_axis(const Recipe& recipe, const Wavelengths& w) {
 Axis albedos_axis(const Wavelengths& w) {
   const auto [least, most] = std::minmax_element(w.albedo.begin(), w.albedo.end());
   Axis axis{"albedo", "1", {*least}};
-  if (*most > *least) axis.nodes = spaced_nodes(*least, *most, kAlbedoNodes);
+  constexpr double kSameAlbedo = 1e-6;  // as good as grey
+  if (*most - *least > kSameAlbedo) axis.nodes = spaced_nodes(*least, *most, kAlbedoNodes);
   return cubic(axis);
 }
 

@@ -70,7 +70,9 @@ inline void prepare_powers(const FilmMedia& media, const Floats4& c0, const Floa
 }
 
 // Doubles up to the squared cosines and the path, whose digits cancel or turn many times.
-inline void prepare(const FilmMedia& media, const Cosines& c0, FilmAngles& angles) {
+// A call of its own: inlined, its constants would be spread over registers and spilled for lists that are
+// short.
+[[gnu::noinline]] void prepare(const FilmMedia& media, const Cosines& c0, FilmAngles& angles) {
   const double n0 = media.exterior_ior, n1 = media.film_ior, n2 = media.base_ior;
   const Cosines q0 = n0 * c0, m0 = q0 * q0, zero = {};
   const Cosines film_m1 = (n1 - n0) * (n1 + n0) + m0, base_m2 = (n2 - n0) * (n2 + n0) + m0;

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <string>
 
 #include "film_kernels.h"
 #include "sunbeam/core/error.h"

@@ -17,12 +17,19 @@ constexpr int kCosines = 4;
 using Cosines = double __attribute__((vector_size(kCosines * sizeof(double))));
 using CosineBits = long long __attribute__((vector_size(kCosines * sizeof(double))));
 
+// Not returned: without AVX the call would have no settled form.
 inline void square_root(const Cosines& x, Cosines& root) {
-  for (int i = 0; i < kCosines; ++i) root[i] = __builtin_sqrt(x[i]);
+  root = Cosines{__builtin_sqrt(x[0]), __builtin_sqrt(x[1]), __builtin_sqrt(x[2]), __builtin_sqrt(x[3])};
+}
+inline void square_root(const Floats4& x, Floats4& root) {
+  root = Floats4{__builtin_sqrtf(x[0]), __builtin_sqrtf(x[1]), __builtin_sqrtf(x[2]), __builtin_sqrtf(x[3])};
 }
 
+inline Floats4 to_floats(const Cosines& x) { return __builtin_convertvector(x, Floats4); }
+
 // All that does not depend on the wavelength, for four cosines. Where X < 0 (n1 between n0 and n2), sum + X
-// sin^2 would cancel at grazing, so it is written as (sum + X) - X cos^2.
+// sin^2 would cancel at grazing. It is then written as (sum + X) - X cos^2, and sum + X as a square: (m_1 +
+// n0 c0 n2 c2)^2 / m_1, (n1^2 c0 c2 + n0 n2 m_1 / n1^2)^2 / m_1.
 struct FilmAngles {
   float offset;                       // of the phase in turns: 0 for sin^2, 1/2 for cos^2
   Floats4 path, path_high, path_low;  // d sqrt(m_1), nm; the second has 12 bits, the third is the rest
@@ -31,38 +38,55 @@ struct FilmAngles {
   Floats4 half_t;                     // t / 2
 };
 
-inline void prepare(const FilmMedia& media, const Cosines& c0, FilmAngles& angles) {
+// What needs no more than floats. Cosines pass where m2 > 0; the others get t = 0 and D = 1.
+inline void prepare_powers(const FilmMedia& media, const Floats4& c0, const Floats4& m1, const Floats4& m2,
+                           FilmAngles& angles) {
   const double n0 = media.exterior_ior, n1 = media.film_ior, n2 = media.base_ior;
-  const double per_n0_squared = 1 / (n0 * n0), per_n1_squared = 1 / (n1 * n1), per_n2 = 1 / n2;
-  const Cosines q0 = n0 * c0, m0 = q0 * q0, beta_squared = n0 * n0 - m0;
-  const Cosines m1 = (n1 - n0) * (n1 + n0) + m0, m2 = (n2 - n0) * (n2 + n0) + m0;
-  const auto through = (m2 > 0) & (c0 > 1e-9);
-  const Cosines zero = {}, tiny = zero + 1e-20, safe_m1 = m1 > tiny ? m1 : tiny;
+  const float n0f = static_cast<float>(n0), n1_squared = static_cast<float>(n1 * n1),
+              n2f = static_cast<float>(n2);
+  const float per_n1_squared = 1 / n1_squared;
+  const float x = static_cast<float>((n1 - n0) * (n1 + n0) * (n1 - n2) * (n1 + n2));
+  const bool is_between = x < 0;
+  angles.offset = is_between ? 0.5f : 0;
 
-  Cosines q1, q2;
-  square_root(safe_m1, q1);
+  const auto through = m2 > 0;
+  const Floats4 zero = {}, one = zero + 1, per_m1 = 1 / m1;
+  Floats4 q2;
   square_root(through ? m2 : zero, q2);
+  const Floats4 q0 = n0f * c0, c2 = (1 / n2f) * q2;
+  const Floats4 part = 1 - per_n1_squared * m1;  // beta^2 / n1^2
+  const Floats4 x_s = (is_between ? -x : x) * per_m1, x_p = x_s * (c0 * c0 - part) * (c2 * c2 - part);
+  Floats4 s = q0 + q2, p = n2f * c0 + n0f * c2, sum_scale = one;
+  if (is_between) {
+    s = m1 + q0 * q2;
+    p = n1_squared * c0 * c2 + (n0f * n2f * per_n1_squared) * m1;
+    sum_scale = per_m1;
+  }
+  angles.sum_s = through ? s * s * sum_scale : one;
+  angles.sum_p = through ? p * p * sum_scale : one;
+  angles.x_s = through ? x_s : zero;
+  angles.x_p = through ? x_p : zero;
+  angles.half_t = 2 * q0 * q2;
+}
+
+// Doubles up to the squared cosines and the path, whose digits cancel or turn many times.
+// A call of its own: inlined, its constants would be spread over registers and spilled for lists that are
+// short.
+[[gnu::noinline]] void prepare(const FilmMedia& media, const Cosines& c0, FilmAngles& angles) {
+  const double n0 = media.exterior_ior, n1 = media.film_ior, n2 = media.base_ior;
+  const Cosines q0 = n0 * c0, m0 = q0 * q0, zero = {};
+  const Cosines film_m1 = (n1 - n0) * (n1 + n0) + m0, base_m2 = (n2 - n0) * (n2 + n0) + m0;
+  const Cosines m1 = film_m1 > 1e-20 ? film_m1 : zero + 1e-20;
+  const Cosines m2 = c0 > 1e-9 ? base_m2 : zero;
+
+  Cosines q1;
+  square_root(m1, q1);
   const Cosines path = media.thickness_nm * q1;
   const Cosines path_high = (Cosines)((CosineBits)path & ~((1LL << 41) - 1));
-  angles.path = __builtin_convertvector(path, Floats4);
-  angles.path_high = __builtin_convertvector(path_high, Floats4);
-  angles.path_low = __builtin_convertvector(path - path_high, Floats4);
-
-  const double film_difference = (n1 - n0) * (n1 + n0) * (n1 - n2) * (n1 + n2);
-  const bool is_between = film_difference < 0;
-  angles.offset = is_between ? 0.5f : 0;
-  const Cosines x_s = film_difference / safe_m1;
-  const Cosines brewster = (1 - beta_squared * (per_n1_squared + per_n0_squared)) *
-                           (1 - beta_squared * (per_n1_squared + per_n2 * per_n2));
-  const Cosines x_p = x_s * brewster;
-  const Cosines s = q0 + q2, p = n2 * c0 + n0 * per_n2 * q2;
-  const double in_sum = is_between ? 1 : 0, sign = is_between ? -1 : 1;
-  const Cosines one = zero + 1;  // keeps what reflects everything away from 0 / 0
-  angles.sum_s = __builtin_convertvector(through ? s * s + in_sum * x_s : one, Floats4);
-  angles.sum_p = __builtin_convertvector(through ? p * p + in_sum * x_p : one, Floats4);
-  angles.x_s = __builtin_convertvector(through ? sign * x_s : zero, Floats4);
-  angles.x_p = __builtin_convertvector(through ? sign * x_p : zero, Floats4);
-  angles.half_t = __builtin_convertvector(through ? 2 * q0 * q2 : zero, Floats4);
+  angles.path = to_floats(path);
+  angles.path_high = to_floats(path_high);
+  angles.path_low = to_floats(path - path_high);
+  prepare_powers(media, to_floats(c0), to_floats(m1), to_floats(m2), angles);
 }
 
 // Sums of the lanes that are equal modulo 4.
@@ -121,38 +145,29 @@ struct FilmLanes {
     return (d_s + d_p) / (d_s * d_p);
   }
 
-  template <int kCount>
-  static void fold_some(const FilmWavelengths& wavelengths, const FilmAngles& angles, FloatRgb* rgb) {
-    V r[kCount] = {}, g[kCount] = {}, b[kCount] = {};
+  static FloatRgb fold_one(const FilmWavelengths& wavelengths, const FilmAngles& angles, int i) {
+    V r = {}, g = {}, b = {};
     for (std::size_t k = 0; k < wavelengths.count; k += kWidth) {
-      const V per_high = load(&wavelengths.per_high[k]), per_low = load(&wavelengths.per_low[k]);
-      for (int i = 0; i < kCount; ++i) {
-        const V power = passing(angles, i, per_high, per_low);
-        r[i] += power * load(&wavelengths.weight[0][k]);
-        g[i] += power * load(&wavelengths.weight[1][k]);
-        b[i] += power * load(&wavelengths.weight[2][k]);
-      }
+      const V power = passing(angles, i, load(&wavelengths.per_high[k]), load(&wavelengths.per_low[k]));
+      r += power * load(&wavelengths.weight[0][k]);
+      g += power * load(&wavelengths.weight[1][k]);
+      b += power * load(&wavelengths.weight[2][k]);
     }
     const FloatRgb& total = wavelengths.total_weight;
-    for (int i = 0; i < kCount; ++i) {
-      const Floats4 passed = angles.half_t[i] * sums(quarters(r[i]), quarters(g[i]), quarters(b[i]));
-      rgb[i] = {total.r - passed[0], total.g - passed[1], total.b - passed[2]};
-    }
+    const Floats4 passed = angles.half_t[i] * sums(quarters(r), quarters(g), quarters(b));
+    return {total.r - passed[0], total.g - passed[1], total.b - passed[2]};
   }
 
   static void fold(const FilmWavelengths& wavelengths, const FilmMedia& media, const float* cosines,
                    std::size_t count, FloatRgb* rgb) {
     FilmAngles angles;
-    for (; count >= kCosines; count -= kCosines, cosines += kCosines, rgb += kCosines) {
-      prepare(media, Cosines{cosines[0], cosines[1], cosines[2], cosines[3]}, angles);
-      fold_some<4>(wavelengths, angles, rgb);
+    for (std::size_t first = 0; first < count; first += kCosines) {
+      const std::size_t left = count - first;
+      const float* c = cosines + first;
+      prepare(media, Cosines{c[0], c[left > 1 ? 1 : 0], c[left > 2 ? 2 : 0], c[left > 3 ? 3 : 0]}, angles);
+      for (int i = 0; i < kCosines && i < static_cast<int>(left); ++i)
+        rgb[first + i] = fold_one(wavelengths, angles, i);
     }
-    if (count == 0) return;
-    const float first = cosines[0], last = cosines[count - 1];
-    prepare(media, Cosines{first, count > 1 ? cosines[1] : first, last, last}, angles);
-    if (count == 1) fold_some<1>(wavelengths, angles, rgb);
-    if (count == 2) fold_some<2>(wavelengths, angles, rgb);
-    if (count == 3) fold_some<3>(wavelengths, angles, rgb);
   }
 
   static void transmittances(const FilmWavelengths& wavelengths, const FilmMedia& media, float cosine,

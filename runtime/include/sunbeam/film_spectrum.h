@@ -11,7 +11,7 @@
 // squared admittances multiplied out. Where the wave is evanescent in the film (beta > n1), X S becomes
 // X sinh^2(|x_k|) with |m_1|; where beta >= n2 or c0 = 0, T = 0.
 //
-// Precision, for thicknesses up to 3000 nm and wavelengths from 380 nm: |error of R_k| <= 2e-6, and T_k is
+// Precision, for thicknesses up to 3000 nm and wavelengths from 380 nm: |error of R_k| <= 1e-6, and T_k is
 // right to 2e-6 of itself at cosines of 1e-3 and more (T below 1e-37 may become 0). Instruction sets differ
 // by no more. R may come out as -1e-6 where it is 0. Cosines below 1e-9 count as 0.
 #pragma once

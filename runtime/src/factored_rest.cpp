@@ -21,15 +21,15 @@ FactoredRest::FactoredRest(const Table& table, const Material& material)
 void FactoredRest::take_arrival(const Factors& factors) {
   for (std::size_t k = 0; k < depth_.size(); ++k) {
     const bool is_new = k == 0 || (depth_[k] != depth_[0] && factors.arrival.axes()[1].size() > 1);
-    arrival_.push_back(is_new ? factors.arrival.slice(std::array{material_.base_ior, depth_[k]}) : arrival_[0]);
+    arrival_.push_back(is_new ? factors.arrival.slice(std::array{material_.base_ior, depth_[k]})
+                              : arrival_[0]);
   }
 }
 
 void FactoredRest::take_gain(const Factors& factors) {
   for (std::size_t k = 0; k < depth_.size(); ++k) {
     const double order = fringe_order(material_, 1) * material_.film_thickness_nm / wavelengths_.nm[k];
-    const double returned =
-        factors.returned.interpolate(std::array{material_.base_ior, depth_[k], order}).r;
+    const double returned = factors.returned.interpolate(std::array{material_.base_ior, depth_[k], order}).r;
     gain_[k] /= 1 - wavelengths_.albedo[k] * returned;
   }
 }
@@ -38,8 +38,8 @@ void FactoredRest::take_exchange(const Factors& factors) {
   ends_ = {factors.exchange.axes()[4], factors.exchange.axes()[5]};
   for (std::size_t k = 0; k < depth_.size(); ++k) {
     const double order = fringe_order(material_, 1) * material_.film_thickness_nm / wavelengths_.nm[k];
-    const NdArray slice = factors.exchange.slice(
-        std::array{material_.base_ior, depth_[k], wavelengths_.albedo[k], order});
+    const NdArray slice =
+        factors.exchange.slice(std::array{material_.base_ior, depth_[k], wavelengths_.albedo[k], order});
     exchange_.emplace_back(slice.values().begin(), slice.values().end());
   }
 }
@@ -70,24 +70,28 @@ FactoredRest::End FactoredRest::end(double cosine, double phi) const {
   return end;
 }
 
-double FactoredRest::exchange(std::size_t k, const End& i, const End& o) const {
-  const std::size_t row = ends_[0].size() * ends_[1].size();
-  double sum = 0;
-  for (std::size_t a = 0; a < i.node.size(); ++a) {
-    double along = 0;
-    for (std::size_t b = 0; b < o.node.size(); ++b)
-      along += o.weight[b] * exchange_[k][i.node[a] * row + o.node[b]];
-    sum += i.weight[a] * along;
-  }
-  return sum;
+FactoredRest::Row FactoredRest::row(const End& i) const {
+  Row row{i.below, i.share, {}};
+  const std::size_t nodes = exchange_.empty() ? 0 : ends_[0].size() * ends_[1].size();
+  row.exchange.resize(nodes * depth_.size());
+  for (std::size_t k = 0; k < exchange_.size(); ++k)
+    for (std::size_t a = 0; a < i.node.size(); ++a)
+      for (std::size_t b = 0; b < nodes; ++b)
+        row.exchange[k * nodes + b] += i.weight[a] * exchange_[k][i.node[a] * nodes + b];
+  return row;
 }
 
-Rgb FactoredRest::rest(const End& i, const End& o) const {
+Rgb FactoredRest::rest(const Row& i, const End& o) const {
   Rgb sum;
+  const std::size_t nodes = i.exchange.size() / depth_.size();
   for (std::size_t k = 0; k < depth_.size(); ++k) {
     double value = gain_[k] * i.share[k] * o.share[k];
-    if (!exchange_.empty())
-      value *= one_visit_of_product(depth_[k], i.below, o.below) + exchange(k, i, o);
+    if (nodes > 0) {
+      double visits = one_visit_of_product(depth_[k], i.below, o.below);
+      for (std::size_t b = 0; b < o.node.size(); ++b)
+        visits += o.weight[b] * i.exchange[k * nodes + o.node[b]];
+      value *= visits;
+    }
     sum += value * wavelengths_.weight[k];
   }
   return sum;

@@ -16,19 +16,29 @@ class FactoredRest {
 
   // What the rest needs to know of one direction.
   struct End {
-    double below = 0;                          // cosine below the film
+    double below = 0;                            // cosine below the film
     std::array<double, kMostWavelengths> share;  // A
-    std::vector<std::size_t> node;             // of `exchange`, and their weights
+    std::vector<std::size_t> node;               // of `exchange`, and their weights
     std::vector<double> weight;
   };
   // phi in [0, pi/2]; of no matter for an isotropic film.
   End end(double cosine, double phi) const;
 
+  // The same with `exchange` contracted, for many others.
+  struct Row {
+    double below;
+    std::array<double, kMostWavelengths> share;
+    std::vector<double> exchange;  // (wavelength, node)
+  };
+  Row row(const End& i) const;
+
   // Folded, 1/sr.
-  Rgb rest(const End& i, const End& o) const;
+  Rgb rest(const Row& i, const End& o) const;
 
   // A folded: what of a direction's light reaches the base.
-  Rgb arriving(const End& end) const { return wavelengths_.fold(std::span(end.share).first(wavelengths_.size())); }
+  Rgb arriving(const End& end) const {
+    return wavelengths_.fold(std::span(end.share).first(wavelengths_.size()));
+  }
 
   const FilmSpectrum& film() const { return film_; }
 
@@ -36,7 +46,6 @@ class FactoredRest {
   void take_arrival(const Factors& factors);
   void take_gain(const Factors& factors);
   void take_exchange(const Factors& factors);
-  double exchange(std::size_t k, const End& i, const End& o) const;
 
   Material material_;
   Wavelengths wavelengths_;

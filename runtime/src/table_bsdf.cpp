@@ -1,19 +1,23 @@
 #include "sunbeam/table_bsdf.h"
 
+#include <variant>
+
+#include "bound_rest.h"
+#include "dense_rest.h"
+#include "rest_sampler.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/text.h"
-#include "sunbeam/core/warp.h"
+#include "sunbeam/ggx.h"
 
 namespace sunbeam {
 namespace {
 
-constexpr std::size_t kCurveNodes = 129;
-constexpr std::size_t kSamplingNodes = 33;  // over cos(theta_o)
-constexpr std::size_t kMarginalBins = 32;   // over cos(theta_i)
-constexpr int kViewerAzimuths = 4;          // of wo in a quadrant, which sampling data are averaged over
-constexpr int kNormalNodes = 96;            // quadrature over visible normals, each way, for an albedo
-constexpr int kSamplingNormalNodes = 16;    // the same for the chance of sampling the first surface
-constexpr double kSmallestCosine = 1e-4;    // sampling data near grazing are taken here
+constexpr int kFilmNodes = 1025;          // over even cosines
+constexpr int kViewerAzimuths = 4;        // of wo in a quadrant, which sampling data are averaged over
+constexpr int kNormalNodes = 96;          // quadrature over visible normals, each way, for an albedo
+constexpr int kSamplingNormalNodes = 16;  // the same for the chance of sampling the first surface
+constexpr int kAlbedoBins = 32;
+constexpr int kRestAzimuths = 8;  // of an anisotropic factored table, in a quadrant
 
 Parameters checked(const Table& table, const Parameters& parameters, OutsideGrid outside) {
   auto values = parameters.values();
@@ -28,188 +32,208 @@ Parameters checked(const Table& table, const Parameters& parameters, OutsideGrid
   return {values[0], values[1], values[2]};
 }
 
-// Shares of the interval between an axis' ends that belong to its nodes, for a function linear between them.
-std::vector<double> trapezoid(const Axis& axis) {
-  const std::size_t n = axis.size();
-  if (n == 1) return {1};
-  std::vector<double> weights(n);
-  for (std::size_t k = 0; k + 1 < n; ++k) {
-    const double half = (axis.nodes[k + 1] - axis.nodes[k]) / (2 * (axis.high() - axis.low()));
-    weights[k] += half;
-    weights[k + 1] += half;
+// Mean of the rest over the azimuth of wi.
+class FactoredAzimuthMean {
+ public:
+  FactoredAzimuthMean(const BoundRest& rest, const Vec3& wo, Symmetry symmetry)
+      : rest_(rest), wo_(wo), azimuths_(symmetry == Symmetry::isotropic ? 1 : kRestAzimuths) {}
+  Rgb operator()(double cos_i) const {
+    Rgb sum;
+    for (int a = 0; a < azimuths_; ++a)
+      sum += to_rgb(rest_(wo_, direction_from_cosine(cos_i, kPi / 2 * (a + 0.5) / azimuths_)));
+    return sum / azimuths_;
   }
-  return weights;
-}
 
-template <class F>
-CosineCurve sampled_curve(std::size_t nodes, F f) {
-  std::vector<Rgb> values(nodes);
-  for (std::size_t i = 0; i < nodes; ++i)
-    values[i] = f(static_cast<double>(i) / static_cast<double>(nodes - 1));
-  return CosineCurve(std::move(values));
-}
+ private:
+  const BoundRest& rest_;
+  Vec3 wo_;
+  int azimuths_;
+};
 
 }  // namespace
 
-TableBsdf::TableBsdf(const Table& table, const Parameters& parameters, OutsideGrid outside)
-    : material_(checked(table, parameters, outside).applied_to(table.material)),
-      symmetry_(table.symmetry),
-      frame_(material_, table.first_visit),
-      ggx_(material_.roughness) {
-  const auto point = Parameters::of(material_).values();
-  remainder_ = table.remainder.slice(point);
-  stderr_ = table.rest_stderr.slice(point);
-  has_azimuth_ = remainder_.axes()[1].size() > 1 || remainder_.axes()[3].size() > 1;
-  const auto film_at = [&](double c) { return std::array{point[0], point[1], c}; };
-  reflectance_ =
-      sampled_curve(kCurveNodes, [&](double c) { return table.film_reflectance.interpolate(film_at(c)); });
-  transmittance_ = sampled_curve(kCurveNodes, [&](double c) { return table.transmittance(film_at(c)); });
+struct BoundTable {
+  BoundTable(const Table& table, const Material& at);
 
-  first_chance_ = sampled_curve(kSamplingNodes, [&](double c) { return Rgb(make_sampling_node(c)); });
-}
+  Rgb rest(const Vec3& wo, const Vec3& wi) const;
+  Rgb film_reflectance(double cosine) const;
+  Rgb first_albedo(const Vec3& wo, int nodes) const;
+  Rgb rest_albedo(const Vec3& wo) const;
+  template <class Mean>
+  void add_rest_density(const Mean& mean_rest, std::vector<double>& density) const;
+  void prepare_sampling();
+  void visit_azimuth_mean(const Vec3& wo,
+                          const std::function<void(const std::function<Rgb(double)>&)>& visit) const;
 
-// Appends the marginal of the rest for viewers at this cosine and returns the chance of the first surface;
-// both are means over the viewer's azimuth.
-double TableBsdf::make_sampling_node(double cos_o) {
-  const int azimuths = symmetry_ == Symmetry::anisotropic ? kViewerAzimuths : 1;
-  std::vector<double> marginal(kMarginalBins);
-  Rgb rest, first;
-  for (int a = 0; a < azimuths; ++a) {
-    const double phi = azimuths == 1 ? 0 : kPi / 2 * (a + 0.5) / azimuths;
-    const Vec3 wo = direction_from_cosine(std::max(cos_o, kSmallestCosine), phi);
-    rest += rest_albedo(wo, &marginal) / azimuths;
-    first += first_albedo(wo, kSamplingNormalNodes) / azimuths;
+  Material material;
+  Symmetry symmetry;
+  double noise = 0;  // relative standard error of a factored rest
+  Ggx ggx;
+  bool smooth;
+  std::variant<std::monostate, DenseRest, BoundRest> rest_;
+  std::vector<Color4> film;
+  RestSampler sampler;
+};
+
+BoundTable::BoundTable(const Table& table, const Material& at)
+    : material(at), symmetry(table.symmetry), ggx(at.roughness), smooth(at.is_smooth()), film(kFilmNodes) {
+  const auto cosine_of = [](int node) { return static_cast<double>(node) / (kFilmNodes - 1); };
+  if (table.is_factored()) {
+    const FactoredRest factored(table, material);
+    std::vector<float> cosines(kFilmNodes);
+    std::vector<FloatRgb> folded(kFilmNodes);
+    for (int i = 0; i < kFilmNodes; ++i) cosines[i] = static_cast<float>(cosine_of(i));
+    factored.film().fold(material.film_thickness_nm, material.base_ior, cosines, folded.data());
+    for (int i = 0; i < kFilmNodes; ++i) film[i] = Color4{folded[i].r, folded[i].g, folded[i].b, 0};
+    rest_.emplace<BoundRest>(factored, symmetry);
+    if (const auto known = table.info.find("noise"); known != table.info.end())
+      parse_number(known->second, noise);
+  } else {
+    rest_.emplace<DenseRest>(table, material);
+    for (int i = 0; i < kFilmNodes; ++i)
+      film[i] = to_color4(table.film_reflectance.interpolate(
+          std::array{material.film_thickness_nm, material.base_ior, cosine_of(i)}));
   }
-  rest_marginals_.emplace_back(marginal);
-  const double of_rest = std::max(0.0, mean(rest)), of_first = std::max(0.0, mean(first));
-  return of_first + of_rest > 0 ? of_first / (of_first + of_rest) : 0.5;
+  prepare_sampling();
 }
 
-Rgb TableBsdf::first(const Vec3& wo, const Vec3& wi) const {
-  if (material_.is_smooth() || wo.z <= 0 || wi.z <= 0) return {};
-  const Vec3 h = normalize(wo + wi);
-  return ggx_.reflection(wo, wi, h) * reflectance_(dot(wo, h));
+Rgb BoundTable::rest(const Vec3& wo, const Vec3& wi) const {
+  if (const auto* factored = std::get_if<BoundRest>(&rest_)) return to_rgb((*factored)(wo, wi));
+  return std::get<DenseRest>(rest_)(wo, wi);
 }
 
-std::array<double, 4> TableBsdf::coordinates(const Vec3& wo, const Vec3& wi) const {
-  if (!has_azimuth_) return {wi.z, 0, wo.z, 0};
-  const AngleCoordinates c = to_coordinates(symmetry_, {wo, wi});
-  return {c.cos_i, c.phi_i, c.cos_o, c.phi_o};
-}
-
-Rgb TableBsdf::rest(const Vec3& wo, const Vec3& wi) const {
-  if (wo.z <= 0 || wi.z <= 0) return {};
-  const Rgb remainder = remainder_.interpolate(coordinates(wo, wi));
-  return frame_.decode(remainder, wi.z, wo.z, transmittance_(wi.z), transmittance_(wo.z));
-}
-
-Rgb TableBsdf::rest_stderr(const Vec3& wo, const Vec3& wi) const {
-  if (wo.z <= 0 || wi.z <= 0) return {};
-  return stderr_.interpolate(coordinates(wo, wi));
+Rgb BoundTable::film_reflectance(double cosine) const {
+  const auto clamped = static_cast<float>(std::clamp(cosine, 0.0, 1.0));
+  return to_rgb(sunbeam::lerp(film.data(), EvenPosition(clamped, kFilmNodes)));
 }
 
 // Int f_first cos dwi by midpoints in the unit square of visible normals, which turns it into a mean of R
 // G2/G1.
-Rgb TableBsdf::albedo(const Vec3& wo) const {
-  return first_albedo(wo, kNormalNodes) + rest_albedo(wo, nullptr);
-}
-
-Rgb TableBsdf::first_albedo(const Vec3& wo, int nodes) const {
-  if (material_.is_smooth()) return reflectance_(wo.z);
+Rgb BoundTable::first_albedo(const Vec3& wo, int nodes) const {
+  if (smooth) return film_reflectance(wo.z);
   Rgb sum;
   for (int i = 0; i < nodes; ++i)
     for (int j = 0; j < nodes; ++j) {
       const Point2 u{(i + 0.5) / nodes, (j + 0.5) / nodes};
-      const Vec3 h = ggx_.sample_visible(wo, u);
+      const Vec3 h = ggx.sample_visible(wo, u);
       const Vec3 wi = reflect(wo, h);
-      if (wi.z > 0) sum += reflectance_(dot(wo, h)) * ggx_.g2_over_g1(wo, wi);
+      if (wi.z > 0) sum += film_reflectance(dot(wo, h)) * ggx.g2_over_g1(wo, wi);
     }
   return sum / (nodes * nodes);
 }
 
-// The table is linear between azimuths, so that the trapezoids of its nodes are exact. Those of an isotropic
-// table are azimuths of wi from wo; those of an anisotropic one are of a quadrant, and wo mirrored stands for
-// wi in the other three.
-std::vector<TableBsdf::AzimuthNode> TableBsdf::azimuths_around(const Vec3& wo) const {
-  const bool isotropic = symmetry_ == Symmetry::isotropic;
-  const Axis& axis = remainder_.axes()[isotropic ? 3 : 1];
-  const auto weights = trapezoid(axis);
-  std::vector<AzimuthNode> result;
-  for (std::size_t k = 0; k < axis.size(); ++k) {
-    if (isotropic) {
-      result.push_back({0, axis.nodes[k], weights[k]});
-      continue;
-    }
-    for (const double x : {wo.x, -wo.x})
-      for (const double y : {wo.y, -wo.y})
-        result.push_back({axis.nodes[k], azimuth({x, y, wo.z}), weights[k] / 4});
-  }
-  return result;
+void BoundTable::visit_azimuth_mean(
+    const Vec3& wo, const std::function<void(const std::function<Rgb(double)>&)>& visit) const {
+  if (const auto* factored = std::get_if<BoundRest>(&rest_))
+    visit(FactoredAzimuthMean(*factored, wo, symmetry));
+  else
+    visit(DenseRest::AzimuthMean(std::get<DenseRest>(rest_), wo));
 }
 
-// Int f_rest cos dwi by four-point Gauss-Legendre in each bin of cos(theta_i); the bins' mean values, which
-// are added to `marginal`, are the sampling density over that cosine.
-Rgb TableBsdf::rest_albedo(const Vec3& wo, std::vector<double>* marginal) const {
+// Int f_rest cos dwi by four-point Gauss-Legendre in each bin of cos(theta_i).
+Rgb BoundTable::rest_albedo(const Vec3& wo) const {
   constexpr double kNode[] = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
   constexpr double kWeight[] = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
                                 0.1739274225687269};
-  if (wo.z <= 0) return {};
-  const auto azimuths = azimuths_around(wo);
-  const Rgb t_o = transmittance_(wo.z);
   Rgb total;
-  for (std::size_t bin = 0; bin < kMarginalBins; ++bin) {
-    Rgb in_bin;
-    for (std::size_t g = 0; g < 4; ++g) {
-      const double cos_i = (static_cast<double>(bin) + kNode[g]) / kMarginalBins;
-      Rgb remainder;  // its mean over the azimuth of wi
-      for (const AzimuthNode& a : azimuths)
-        remainder += a.weight * remainder_.interpolate(std::array{cos_i, a.phi_i, wo.z, a.phi_o});
-      const Rgb mean_value = frame_.decode(remainder, cos_i, wo.z, transmittance_(cos_i), t_o);
-      in_bin += mean_value * (kWeight[g] * cos_i * 2 * kPi);
-    }
-    if (marginal) (*marginal)[bin] += std::max(0.0, mean(in_bin));
-    total += in_bin / kMarginalBins;
-  }
+  if (wo.z <= 0) return total;
+  visit_azimuth_mean(wo, [&](const auto& mean_rest) {
+    for (int bin = 0; bin < kAlbedoBins; ++bin)
+      for (int g = 0; g < 4; ++g) {
+        const double cos_i = (bin + kNode[g]) / kAlbedoBins;
+        total += mean_rest(cos_i) * (kWeight[g] * cos_i * 2 * kPi / kAlbedoBins);
+      }
+  });
   return total;
 }
 
-double TableBsdf::first_chance(double cos_o) const { return first_chance_(cos_o).r; }
-
-// Density over wi, 1/sr: a mixture of the two nearest nodes' marginals, uniform in azimuth.
-double TableBsdf::rest_pdf(double cos_o, double cos_i) const {
-  const Bracket at = even_bracket(cos_o, kSamplingNodes);
-  return lerp(at.upper_weight, rest_marginals_[at.lower].pdf(cos_i), rest_marginals_[at.upper].pdf(cos_i)) /
-         (2 * kPi);
+// Densities follow the mean over channels, and over the viewer's azimuth.
+void BoundTable::prepare_sampling() {
+  const int azimuths = symmetry == Symmetry::anisotropic ? kViewerAzimuths : 1;
+  for (int row = 0; row < RestSampler::kRows; ++row) {
+    std::vector<double> density(RestSampler::kBins);
+    double of_first = 0, of_rest = 0;
+    for (int a = 0; a < azimuths; ++a) {
+      const double phi = azimuths == 1 ? 0 : kPi / 2 * (a + 0.5) / azimuths;
+      const Vec3 wo = direction_from_cosine(RestSampler::cosine_of_row(row), phi);
+      of_first += std::max(0.0, mean(first_albedo(wo, kSamplingNormalNodes)));
+      visit_azimuth_mean(wo, [&](const auto& mean_rest) {
+        for (int bin = 0; bin < RestSampler::kBins; ++bin) {
+          const double root = RestSampler::middle_of_bin(bin), cos_i = root * root;
+          // f cos dwi = f cos 2 pi dcos, dcos = 2 root droot.
+          const double power = std::max(0.0, mean(mean_rest(cos_i)) * cos_i * 4 * kPi * root);
+          density[static_cast<std::size_t>(bin)] += power;
+          of_rest += power / RestSampler::kBins;
+        }
+      });
+    }
+    sampler.add_row(density, of_first + of_rest > 0 ? of_first / (of_first + of_rest) : 0.5);
+  }
 }
 
-Vec3 TableBsdf::sample_rest(const Vec3& wo, Rng& rng) const {
-  const Bracket at = even_bracket(wo.z, kSamplingNodes);
-  const auto& marginal = rest_marginals_[rng.uniform() < at.upper_weight ? at.upper : at.lower];
-  const double cosine = marginal.sample(rng.uniform());
-  return direction_from_cosine(cosine, 2 * kPi * rng.uniform());
+TableBsdf::TableBsdf(const Table& table, const Parameters& parameters, OutsideGrid outside)
+    : bound_(std::make_shared<BoundTable>(table,
+                                          checked(table, parameters, outside).applied_to(table.material))) {}
+
+const Material& TableBsdf::material() const { return bound_->material; }
+
+Rgb TableBsdf::film_reflectance(double cosine) const { return bound_->film_reflectance(cosine); }
+
+Rgb TableBsdf::dirac(const Vec3& wo) const {
+  return bound_->smooth && wo.z > 0 ? bound_->film_reflectance(wo.z) : Rgb();
+}
+
+Rgb TableBsdf::first(const Vec3& wo, const Vec3& wi) const {
+  if (bound_->smooth || wo.z <= 0 || wi.z <= 0) return {};
+  const Vec3 h = normalize(wo + wi);
+  return bound_->ggx.reflection(wo, wi, h) * bound_->film_reflectance(dot(wo, h));
+}
+
+Rgb TableBsdf::rest(const Vec3& wo, const Vec3& wi) const {
+  if (wo.z <= 0 || wi.z <= 0) return {};
+  return bound_->rest(wo, wi);
+}
+
+Rgb TableBsdf::rest_stderr(const Vec3& wo, const Vec3& wi) const {
+  if (wo.z <= 0 || wi.z <= 0) return {};
+  if (const auto* dense = std::get_if<DenseRest>(&bound_->rest_)) return dense->standard_error(wo, wi);
+  return transform(bound_->rest(wo, wi), [&](double x) { return std::abs(x) * bound_->noise; });
+}
+
+Rgb TableBsdf::albedo(const Vec3& wo) const {
+  return bound_->first_albedo(wo, kNormalNodes) + bound_->rest_albedo(wo);
+}
+
+EvalPdf TableBsdf::eval_pdf(const Vec3& wo, const Vec3& wi) const {
+  if (wo.z <= 0 || wi.z <= 0) return {};
+  const BoundTable& b = *bound_;
+  const EvenPosition viewer = b.sampler.viewer(std::sqrt(static_cast<float>(wo.z)));
+  const double chance = b.sampler.first_chance(viewer);
+  EvalPdf result{b.rest(wo, wi), (1 - chance) * b.sampler.pdf(viewer, std::sqrt(static_cast<float>(wi.z)))};
+  if (b.smooth) return result;
+  const Vec3 h = normalize(wo + wi);
+  result.f += b.ggx.reflection(wo, wi, h) * b.film_reflectance(dot(wo, h));
+  result.pdf += chance * b.ggx.reflection_pdf_bounded(wo, h);
+  return result;
 }
 
 std::optional<BsdfSample> TableBsdf::sample(const Vec3& wo, Rng& rng) const {
   if (wo.z <= 0) return {};
-  const double chance = first_chance(wo.z);
+  const BoundTable& b = *bound_;
+  const EvenPosition viewer = b.sampler.viewer(std::sqrt(static_cast<float>(wo.z)));
+  const double chance = b.sampler.first_chance(viewer);
   Vec3 wi;
   if (rng.uniform() < chance) {
-    if (material_.is_smooth()) return BsdfSample{{-wo.x, -wo.y, wo.z}, reflectance_(wo.z) / chance, true};
-    wi = reflect(wo, ggx_.sample_visible(wo, {rng.uniform(), rng.uniform()}));
+    if (b.smooth) return BsdfSample{{-wo.x, -wo.y, wo.z}, b.film_reflectance(wo.z) / chance, true};
+    wi = reflect(wo, b.ggx.sample_visible_bounded(wo, {rng.uniform(), rng.uniform()}));
   } else {
-    wi = sample_rest(wo, rng);
+    const double root = b.sampler.sample(viewer, rng.uniform());
+    wi = direction_from_cosine(root * root, 2 * kPi * rng.uniform());
   }
-  const double density = mis_pdf(wo, wi);
-  if (wi.z <= 0 || density <= 0) return {};
-  return BsdfSample{wi, (first(wo, wi) + rest(wo, wi)) * (wi.z / density), false};
-}
-
-double TableBsdf::mis_pdf(const Vec3& wo, const Vec3& wi) const {
-  if (wo.z <= 0 || wi.z <= 0) return 0;
-  const double chance = first_chance(wo.z);
-  const double rest = (1 - chance) * rest_pdf(wo.z, wi.z);
-  if (material_.is_smooth()) return rest;
-  return rest + chance * ggx_.reflection_pdf(wo, normalize(wo + wi));
+  if (wi.z <= 0) return {};
+  const EvalPdf at = eval_pdf(wo, wi);
+  if (at.pdf <= 0) return {};
+  return BsdfSample{wi, at.f * (wi.z / at.pdf), false};
 }
 
 }  // namespace sunbeam

@@ -2,7 +2,8 @@
 //
 // Frame: local, macro normal = z; roughness.u along x, roughness.v along y. `w` and `h` are unit vectors;
 // w.z > 0. Roughness is the GGX alpha itself (not its square), > 0. Sources: Walter et al. 2007; Heitz 2014
-// (Smith, height-correlated); Dupuy and Benyoub 2023 (sampling visible normals by spherical caps).
+// (Smith, height-correlated); Dupuy and Benyoub
+// 2023 (sampling visible normals by spherical caps).
 #pragma once
 
 #include "sunbeam/core/vec.h"
@@ -54,6 +55,31 @@ class Ggx {
     const Vec3 cap = Vec3{sin_theta * std::cos(phi), sin_theta * std::sin(phi), z} + stretched;
     return normalize({u_ * cap.x, v_ * cap.y, std::max(1e-12, cap.z)});
   }
+
+  // A normal that mirrors `w`, with density reflection_pdf_bounded() over the mirrored direction: visible
+  // normals of isotropic roughness, but fewer of those that send it below the horizon (Eto and Tokuyoshi
+  // 2023).
+  Vec3 sample_visible_bounded(const Vec3& w, const Point2& u) const {
+    const Vec3 stretched = normalize({u_ * w.x, v_ * w.y, w.z});
+    const double bottom = bound(w) * stretched.z;
+    const double phi = 2 * kPi * u.x;
+    const double z = (1 - u.y) * (1 + bottom) - bottom;
+    const double sin_theta = std::sqrt(std::max(0.0, 1 - z * z));
+    const Vec3 cap = Vec3{sin_theta * std::cos(phi), sin_theta * std::sin(phi), z} + stretched;
+    return normalize({u_ * cap.x, v_ * cap.y, std::max(1e-12, cap.z)});
+  }
+  // 1/sr.
+  double reflection_pdf_bounded(const Vec3& wo, const Vec3& h) const {
+    return d(h) / (2 * (bound(wo) * wo.z + root(wo)));
+  }
+  // Factor of the cap's lower end.
+  double bound(const Vec3& w) const {
+    const double alpha = std::min(u_, v_);
+    const double s2 = square(1 + std::sqrt(std::max(0.0, w.x * w.x + w.y * w.y)));
+    return (1 - alpha * alpha) * s2 / (s2 + alpha * alpha * w.z * w.z);
+  }
+  // cosine (1 + 2 Lambda).
+  double root(const Vec3& w) const { return std::sqrt(w.z * w.z + u2_ * w.x * w.x + v2_ * w.y * w.y); }
 
   // The lobe of a reflecting surface without its reflectance: D(h) G2 / (4 cos_o cos_i), 1/sr.
   double reflection(const Vec3& wo, const Vec3& wi, const Vec3& h) const {

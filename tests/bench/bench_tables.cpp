@@ -11,6 +11,7 @@
 #include <deque>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "bake/live/exact_bsdf.h"
 #include "bake/recipe.h"
@@ -89,7 +90,8 @@ const std::vector<std::pair<std::string, Overrides>> kBaked = {
     {"sunbeam, 20 angles", {"table.angles=20"}},
 };
 
-constexpr HalfGrid::Nodes kUniform[] = {{16, 16, 16}, {32, 32, 32}, {64, 64, 64}, {128, 128, 64}};
+constexpr HalfGrid::Nodes kUniform[] = {
+    {16, 16, 16}, {32, 32, 32}, {64, 64, 64}, {128, 128, 64}, {128, 128, 128}};
 
 Tables::Tables(const Bsdf& truth) : merl(truth) {
   for (const auto& [name, overrides] : kBaked) sources.push_back(baked.emplace_back(overrides).source(name));
@@ -106,6 +108,12 @@ Tables::Tables(const Bsdf& truth) : merl(truth) {
 // Order statistic: the smallest value that at least a share q of all values do not exceed.
 double quantile(const std::vector<double>& sorted, double q) {
   return sorted[static_cast<std::size_t>(std::ceil(q * static_cast<double>(sorted.size()))) - 1];
+}
+
+nlohmann::ordered_json json_of(const Parameters& parameters) {
+  nlohmann::ordered_json json;
+  for (std::size_t k = 0; k < kParameterNames.size(); ++k) json[kParameterNames[k]] = parameters.values()[k];
+  return json;
 }
 
 nlohmann::ordered_json measure(const Source& source, const std::vector<Probe>& probes,
@@ -142,26 +150,25 @@ nlohmann::ordered_json weigh_samples(const Effort& effort) {
   const Table table = bake_table(recipe, {});
   const Vec3 wo = spherical_direction(kSampleAngle * kPi / 180, 0);
   Rng rng(5, 0);
-  double sum = 0, worst = 0;
   const auto points = materials_of(recipe, effort.materials, rng);
-  for (const Parameters& point : points) {
-    const TableBsdf bsdf(table, point, OutsideGrid::refuse);
-    const double deviation = throughput_deviation(bsdf, wo, effort.draws, rng);
-    sum += deviation;
-    worst = std::max(worst, deviation);
-  }
+  std::vector<double> deviations;
+  for (const Parameters& point : points)
+    deviations.push_back(
+        throughput_deviation(TableBsdf(table, point, OutsideGrid::refuse), wo, effort.draws, rng));
+  const auto worst = std::max_element(deviations.begin(), deviations.end());
   return {{"theta_o_deg", kSampleAngle},
           {"materials", points.size()},
           {"draws", effort.draws},
-          {"deviation_mean", sum / static_cast<double>(points.size())},
-          {"deviation_worst", worst}};
+          {"deviation_mean", std::accumulate(deviations.begin(), deviations.end(), 0.0) /
+                                 static_cast<double>(deviations.size())},
+          {"deviation_worst", *worst},
+          {"worst_material", json_of(points[static_cast<std::size_t>(worst - deviations.begin())])}};
 }
 
 nlohmann::ordered_json run(const Effort& effort) {
   const Stopwatch stopwatch(effort.rounds);
   nlohmann::ordered_json report;
-  for (std::size_t k = 0; k < kParameterNames.size(); ++k)
-    report["material"][kParameterNames[k]] = kPoint.values()[k];
+  report["material"] = json_of(kPoint);
   report["wi"] = effort.probes;
   report["directions"] = effort.directions;
   report["half_conversion"] = HalfGrid::has_f16c() ? "F16C" : "Imath";

@@ -44,11 +44,10 @@ class HalfGrid {
   }
 
   Rgb operator()(double x, double y, double z) const {
-    const Corner corner = locate({x, y, z});
 #if defined(__x86_64__)
-    if (f16c_) return interpolate_f16c(corner);
+    if (f16c_) return interpolate_f16c({x, y, z});
 #endif
-    return interpolate(corner);
+    return interpolate({x, y, z});
   }
 
  private:
@@ -61,18 +60,21 @@ class HalfGrid {
     return at[0] * strides_[0] + at[1] * strides_[1] + at[2] * strides_[2];
   }
 
+  // Signed 32-bit indices: other conversions from floating point and back branch.
   Corner locate(const std::array<double, 3>& x) const {
     Corner corner{values_.data(), {}};
     for (std::size_t k = 0; k < 3; ++k) {
-      const double scaled = std::clamp(x[k], 0.0, 1.0) * static_cast<double>(nodes_[k] - 1);
-      const auto lower = std::min(static_cast<std::size_t>(scaled), nodes_[k] - 2);
-      corner.lowest += lower * strides_[k];
-      corner.upper_weight[k] = static_cast<float>(scaled - static_cast<double>(lower));
+      const auto last = static_cast<std::int32_t>(nodes_[k]) - 1;
+      const auto scaled = static_cast<float>(x[k]) * static_cast<float>(last);
+      const auto lower = std::min(static_cast<std::int32_t>(scaled), last - 1);
+      corner.lowest += static_cast<std::size_t>(lower) * strides_[k];
+      corner.upper_weight[k] = scaled - static_cast<float>(lower);
     }
     return corner;
   }
 
-  Rgb interpolate(const Corner& corner) const {
+  Rgb interpolate(const std::array<double, 3>& x) const {
+    const Corner corner = locate(x);
     Rgb sum;
     for (unsigned upper = 0; upper < 8; ++upper) {
       const std::uint16_t* cell = corner.lowest;
@@ -107,7 +109,8 @@ class HalfGrid {
     return between(corner.upper_weight[1], edge(cell, corner.upper_weight[2]),
                    edge(cell + strides_[1], corner.upper_weight[2]));
   }
-  __attribute__((target("f16c"))) Rgb interpolate_f16c(const Corner& corner) const {
+  __attribute__((target("f16c"))) Rgb interpolate_f16c(const std::array<double, 3>& x) const {
+    const Corner corner = locate(x);
     alignas(16) float value[4];
     _mm_store_ps(value, between(corner.upper_weight[0], face(corner.lowest, corner),
                                 face(corner.lowest + strides_[0], corner)));

@@ -59,26 +59,25 @@ class Stopwatch {
   // Every pass runs twice; the first warms the caches up.
   template <class Call>
   static double pass_ns(Call call) {
-    Account account;
+    double seconds = 0;
     for (int pass = 0; pass < 2; ++pass) {
-      account = {};
-      std::size_t k = 0;
-      account.run(kPairs, [&] { return call(k++); });
+      const double start = thread_seconds();
+      for (std::size_t k = 0; k < kPairs; ++k) benchmark::DoNotOptimize(call(k));
+      seconds = thread_seconds() - start;
     }
-    benchmark::DoNotOptimize(account.sum);
-    return account.ns();
+    return 1e9 * seconds / kPairs;
   }
 
   double yardstick_ns() const {
-    return pass_ns([&](std::size_t k) { return mean(yardstick_(k)); });
+    return pass_ns([&](std::size_t k) { return yardstick_(k); });
   }
 
   double eval_ns(const Bsdf& bsdf) const {
     Rng rng(2, 0);
-    return pass_ns([&](std::size_t k) { return mean(bsdf.eval(pairs_[k].wo, pairs_[k].wi, rng)); });
+    return pass_ns([&](std::size_t k) { return bsdf.eval(pairs_[k].wo, pairs_[k].wi, rng); });
   }
 
-  static constexpr int kPairs = 4096;
+  static constexpr std::size_t kPairs = 4096;
 
   int rounds_;
   Yardstick yardstick_;

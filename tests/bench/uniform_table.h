@@ -32,9 +32,11 @@ class UniformTable final : public PlainTable {
     return holds_ == Holds::f ? f : f * (wi.z * wo.z);
   }
 
+  static double quarter_turns(double cosine) { return std::acos(std::min(cosine, 1.0)) * (2 / kPi); }
+
   Rgb value(const Vec3& wo, const Vec3& wi) const override {
     const double phi = std::atan2(std::abs(wi.x * wo.y - wi.y * wo.x), wi.x * wo.x + wi.y * wo.y);
-    const Rgb found = grid_(std::acos(wi.z) * (2 / kPi), std::acos(wo.z) * (2 / kPi), phi / kPi);
+    const Rgb found = grid_(quarter_turns(wi.z), quarter_turns(wo.z), phi / kPi);
     return holds_ == Holds::f ? found : found / (wi.z * wo.z);
   }
 

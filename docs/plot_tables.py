@@ -9,8 +9,8 @@ import sys
 DOCS = pathlib.Path(__file__).resolve().parent
 
 WIDTH, HEIGHT = 760, 480
-LEFT, RIGHT, TOP, BOTTOM = 80, 20, 20, 60
-LABEL_HEIGHT = 13
+LEFT, RIGHT, TOP, BOTTOM = 80, 40, 20, 60
+LABEL_WIDTH, LABEL_HEIGHT = 45, 13
 
 # family: colour, side of the marker that labels stand on
 FAMILIES = {
@@ -67,23 +67,24 @@ def frame(x, y):
     return parts
 
 
-def spread(heights):
-    """The same heights, ascending, moved down the page so that labels do not overlap."""
-    placed = []
-    for height in heights:
-        placed.append(max(height, placed[-1] + LABEL_HEIGHT) if placed else height)
-    return placed
+def free_height(place, taken):
+    """The height of `place`, or the next further down the page that no label nearby has taken."""
+    px, height = place
+    for other_x, other_height in sorted(taken, key=lambda other: other[1]):
+        if abs(px - other_x) < LABEL_WIDTH and abs(height - other_height) < LABEL_HEIGHT:
+            height = other_height + LABEL_HEIGHT
+    return height
 
 
 def series(rows, colour, side, x, y):
-    rows = sorted(rows, key=lambda row: y(row["error_median"]))
-    parts = []
-    for row, label_y in zip(rows, spread([y(row["error_median"]) for row in rows])):
+    parts, labels = [], []
+    for row in sorted(rows, key=lambda row: y(row["error_median"])):
         px, py = x(row["bytes"]), y(row["error_median"])
+        labels.append((px, free_height((px, py), labels)))
         parts.append(line(px, py, px, y(row["error_p99"]), colour))
         parts.append(f'<circle cx="{px:.1f}" cy="{py:.1f}" r="4.5" fill="{colour}"/>')
         offset, anchor = (9, "start") if side == "right" else (-9, "end")
-        parts.append(text(px + offset, label_y + 4, f"{row['eval_ns']:.0f} ns", anchor, f'fill="{colour}"'))
+        parts.append(text(px + offset, labels[-1][1] + 4, f"{row['eval_ns']:.0f} ns", anchor, f'fill="{colour}"'))
     return parts
 
 
@@ -130,7 +131,7 @@ def main():
     page = (DOCS / "performance.md").read_text()
     page = replace_between(page, "tables", table_of(report))
     page = replace_between(page, "yardstick",
-                           f"It took {report['yardstick_ns']:.0f} ns here, conversions by {report['half_conversion']}.")
+                           f"It took {report['yardstick_ns']:.1f} ns here, conversions by {report['half_conversion']}.")
     page = replace_between(page, "sample", sample_text(report["sample"]))
     (DOCS / "performance.md").write_text(page)
 

@@ -14,8 +14,8 @@
 namespace sunbeam {
 
 struct PairedTime {
-  double ns;     // a call
-  double ratio;  // to the yardstick
+  double ns, yardstick_ns;  // a call
+  double ratio;
 };
 
 inline double median(std::vector<double> values) {
@@ -36,19 +36,13 @@ class Stopwatch {
 
   // Medians over the rounds.
   PairedTime time_eval(const Bsdf& bsdf) const {
-    std::vector<double> ns, ratio;
+    std::vector<double> ns, yardstick, ratio;
     for (int round = 0; round < rounds_; ++round) {
-      const double yardstick = yardstick_ns();
+      yardstick.push_back(yardstick_ns());
       ns.push_back(eval_ns(bsdf));
-      ratio.push_back(ns.back() / yardstick);
+      ratio.push_back(ns.back() / yardstick.back());
     }
-    return {median(ns), median(ratio)};
-  }
-
-  double time_yardstick() const {
-    std::vector<double> ns;
-    for (int round = 0; round < rounds_; ++round) ns.push_back(yardstick_ns());
-    return median(ns);
+    return {median(ns), median(yardstick), median(ratio)};
   }
 
  private:

@@ -97,7 +97,7 @@ class HalfGrid {
 
 #if defined(__x86_64__)
   __attribute__((target("f16c"))) static __m128 colour(const std::uint16_t* cell) {
-    return _mm_cvtph_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(cell)));
+    return _mm_cvtph_ps(_mm_loadu_si64(cell));
   }
   __attribute__((target("f16c"))) static __m128 between(float t, __m128 a, __m128 b) {
     return _mm_add_ps(a, _mm_mul_ps(_mm_set1_ps(t), _mm_sub_ps(b, a)));

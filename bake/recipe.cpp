@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "bake/factor_walks.h"
 #include "runtime/config/config.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/file.h"
@@ -205,7 +206,11 @@ Recipe parse_recipe(const std::string& text, const std::string& name,
   recipe.table.angles = table.integer("angles", 2, 512, recipe.table.angles);
   recipe.table.azimuths = read_azimuths(table, recipe.material);
   recipe.table.precision = static_cast<Precision>(table.choice("precision", {"half", "float"}, 0));
-  table.choice("encoding", {"dense"}, 0);
+  recipe.table.encoding = static_cast<Encoding>(table.choice("encoding", {"auto", "dense", "factored"}, 0));
+  if (recipe.table.encoding == Encoding::factored && !has_factors(recipe.material))
+    table.fail("encoding",
+               fmt::format("found \"factored\", but the material has {}; allowed: \"auto\", \"dense\"",
+                           recipe.material.scatters() ? "scattering_per_nm > 0" : "microfacet \"multiple\""));
 
   const ConfigTable accuracy = config.table("accuracy");
   recipe.accuracy.noise = accuracy.number("noise", {1e-4, 1}, recipe.accuracy.noise);

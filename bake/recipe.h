@@ -13,6 +13,15 @@
 
 namespace sunbeam {
 
+// How a table holds the rest: sunbeam/table.h. automatic: the smallest whose measured error meets the
+// recipe's tolerances.
+enum class Encoding { automatic, dense, factored };
+
+constexpr const char* name_of(Encoding encoding) {
+  constexpr const char* kNames[] = {"auto", "dense", "factored"};
+  return kNames[static_cast<int>(encoding)];
+}
+
 struct Recipe {
   Material
       material;  // [material]: fixed values, and defaults of the grid's parameters; albedo as Spectrum has it
@@ -20,11 +29,11 @@ struct Recipe {
 
   struct {
     int angles = 12;  // nodes over cos(theta), for wi and wo alike
-    // Nodes over |dphi| in [0, pi]; 1 where the rest has no azimuth. Of an anisotropic film: nodes over phi_o
-    // in [0, 2 pi), a multiple of 4, and azimuths / 4 + 1 over phi_i in [0, pi/2].
+    // Dense: nodes over |dphi| in [0, pi]; 1 where the rest has no azimuth. Of an anisotropic film: nodes
+    // over phi_o in [0, 2 pi), a multiple of 4, and azimuths / 4 + 1 over phi_i in [0, pi/2].
     int azimuths = 1;
     Precision precision = Precision::half_float;
-    std::string encoding = "dense";
+    Encoding encoding = Encoding::automatic;
   } table;
 
   struct {

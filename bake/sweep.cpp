@@ -8,6 +8,7 @@
 #include <span>
 
 #include "bake/cell.h"
+#include "bake/factor_walks.h"
 #include "bake/film_tables.h"
 #include "bake/live/pfmc.h"
 #include "bake/parallel_tasks.h"
@@ -172,6 +173,16 @@ class Orbits {
   std::vector<Cells> orbits_;
 };
 
+std::map<std::string, std::string> info_of(const Recipe& recipe, Encoding encoding, std::uint64_t seed,
+                                           std::uint64_t walks, const char* estimator) {
+  std::map<std::string, std::string> info{{"recipe", recipe.text},        {"recipe_hash", recipe.hash},
+                                          {"seed", std::to_string(seed)}, {"samples", std::to_string(walks)},
+                                          {"estimator", estimator},       {"tool_version", kToolVersion},
+                                          {"encoding", name_of(encoding)}};
+  info.merge(recipe.spectrum.attributes());
+  return info;
+}
+
 class Sweep {
  public:
   Sweep(const Recipe& recipe, const SweepSettings& settings)
@@ -192,14 +203,8 @@ class Sweep {
   Table run() {
     run_parallel_tasks(nodes_, settings_.threads, settings_.on_progress,
                        [&](std::size_t node) { bake_node(node); });
-    table_.info = {{"recipe", recipe_.text},
-                   {"recipe_hash", recipe_.hash},
-                   {"seed", std::to_string(settings_.seed)},
-                   {"samples", std::to_string(walks_.load())},
-                   {"estimator", name_of(recipe_.accuracy.estimator)},
-                   {"tool_version", kToolVersion},
-                   {"encoding", recipe_.table.encoding}};
-    table_.info.merge(recipe_.spectrum.attributes());
+    table_.info =
+        info_of(recipe_, Encoding::dense, settings_.seed, walks_, name_of(recipe_.accuracy.estimator));
     return std::move(table_);
   }
 
@@ -244,15 +249,54 @@ class Sweep {
   std::atomic<std::uint64_t> walks_ = 0;
 };
 
+Table bake_factored(const Recipe& recipe, const SweepSettings& settings) {
+  FactorResult result = walk_factors(recipe, settings.seed, settings.threads, settings.on_progress);
+  Table table;
+  table.material = recipe.material;
+  table.symmetry = symmetry_of(recipe);
+  table.factors = std::move(result.factors);
+  table.info = info_of(recipe, Encoding::factored, settings.seed, result.walks, "pfmc-shared-legs");
+  table.info["noise"] = to_text(result.relative_stderr);
+  return table;
+}
+
 double cells_of(const std::vector<Axis>& axes) {
   double cells = 1;
   for (const Axis& axis : axes) cells *= static_cast<double>(axis.size());
   return cells;
 }
 
+double bytes_of(const NdArray& array) {
+  return static_cast<double>(array.cells() * array.channels() *
+                             (array.precision() == Precision::half_float ? 2 : 4));
+}
+
+// Without compression.
+double bytes_of(const Recipe& recipe, Encoding encoding) {
+  if (encoding == Encoding::factored) {
+    const Factors factors = factor_axes(recipe);
+    return bytes_of(factors.arrival) + bytes_of(factors.returned) + bytes_of(factors.exchange);
+  }
+  const double value = recipe.table.precision == Precision::half_float ? 2 : 4;
+  const double films = recipe.material.is_smooth() ? 1 : 2;
+  return 2 * 3 * value * cells_of(rest_axes(recipe)) + films * 3 * 4 * cells_of(film_axes(recipe));
+}
+
 }  // namespace
 
-void require_reasonable_size(const Recipe& recipe) {
+std::vector<Encoding> encodings_of(const Recipe& recipe) {
+  if (recipe.table.encoding != Encoding::automatic) return {recipe.table.encoding};
+  if (!has_factors(recipe.material)) return {Encoding::dense};
+  if (bytes_of(recipe, Encoding::factored) < bytes_of(recipe, Encoding::dense))
+    return {Encoding::factored, Encoding::dense};
+  return {Encoding::dense, Encoding::factored};
+}
+
+void require_reasonable_size(const Recipe& recipe, Encoding encoding) {
+  if (encoding == Encoding::factored) {
+    factor_axes(recipe);
+    return;
+  }
   constexpr double kMostCells = 1 << 28;  // two arrays of three floats: 6.4 GB
   const double rest = cells_of(rest_axes(recipe)), film = cells_of(film_axes(recipe));
   if (rest > kMostCells)
@@ -265,8 +309,13 @@ void require_reasonable_size(const Recipe& recipe) {
         recipe.name, film, kMostCells));
 }
 
-Table bake_table(const Recipe& recipe, const SweepSettings& settings) {
+Table bake_table(const Recipe& recipe, Encoding encoding, const SweepSettings& settings) {
+  if (encoding == Encoding::factored) return bake_factored(recipe, settings);
   return Sweep(recipe, settings).run();
+}
+
+Table bake_table(const Recipe& recipe, const SweepSettings& settings) {
+  return bake_table(recipe, encodings_of(recipe).front(), settings);
 }
 
 }  // namespace sunbeam

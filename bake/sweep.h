@@ -16,11 +16,17 @@ struct SweepSettings {
   std::function<void(double fraction)> on_progress;  // called now and then, one thread at a time
 };
 
-// Throws Error if the table would be larger than a machine can be expected to hold.
-void require_reasonable_size(const Recipe& recipe);
+// What the recipe asks for, or what can hold its material, the smallest in memory first.
+std::vector<Encoding> encodings_of(const Recipe& recipe);
 
-// The same recipe and seed give the same bits for every thread count: each (parameter node, wi) has its
-// own random stream and its own stop rule. info holds everything but the measured error.
+// Throws Error if the table would be larger than a machine can be expected to hold.
+void require_reasonable_size(const Recipe& recipe, Encoding encoding);
+
+// The same recipe and seed give the same bits for every thread count. Dense: each (parameter node, wi) has
+// its own random stream and its own stop rule; factored: see factor_walks.h. info holds everything but the
+// measured error.
+Table bake_table(const Recipe& recipe, Encoding encoding, const SweepSettings& settings);
+// In the first of encodings_of().
 Table bake_table(const Recipe& recipe, const SweepSettings& settings);
 
 }  // namespace sunbeam

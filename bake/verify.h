@@ -52,7 +52,7 @@ struct VerifyReport {
 };
 
 // What a table of this recipe is held against unless told otherwise: walks, and where the pigment scatters
-// those of the recipe.
+// those of the recipe; the exact evaluator where the tolerance is finer than walks can show in useful time.
 Estimator default_truth(const Recipe& recipe);
 
 // Throws Error if the recipe in the table cannot be read, or naming the key if truth is exact and the

@@ -20,12 +20,17 @@ Json number_or_text(const std::string& text) {
   return parse_number(text, value) ? Json(value) : Json(text);
 }
 
+// Of the values: a factored table's parameters are no axes of its arrays.
+const std::vector<Axis>& axes_of(const Table& table) {
+  return table.is_factored() ? table.factors.grid : table.remainder.axes();
+}
+
 Json describe(const Table& table, const std::string& path) {
   Json json;
   json["schema_version"] = kTableSchemaVersion;
   json["encoding"] = table.info.at("encoding");
   json["bytes"] = std::filesystem::file_size(path);
-  for (const Axis& axis : table.remainder.axes())
+  for (const Axis& axis : axes_of(table))
     json["axes"].push_back({{"name", axis.name}, {"unit", axis.unit}, {"nodes", axis.nodes}});
   for (const char* key : {"recipe", "recipe_hash"}) json[key] = table.info.at(key);
   for (const char* key : {"seed", "samples"}) json[key] = std::stoull(table.info.at(key));
@@ -48,7 +53,7 @@ void print_text(const Json& json, const Table& table) {
     if (key == "axes" || key == "recipe" || key == "error") continue;
     fmt::print("{:<16}{}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
   }
-  for (const Axis& axis : table.remainder.axes())
+  for (const Axis& axis : axes_of(table))
     fmt::print("axis            {:<18} {:>4} nodes, {:g} to {:g} {}\n", axis.name, axis.size(),
                axis.nodes.front(), axis.nodes.back(), axis.unit == "1" ? "" : axis.unit);
   for (const auto& [key, value] : json["error"].items())

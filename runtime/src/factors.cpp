@@ -18,7 +18,7 @@ double fringe_order(const Material& material, double cosine) {
 double arrival_cosine(const Material& material, double cosine) {
   const double below = std::max(material.cosine_below(cosine), kLeastCosineBelow);
   if (material.is_smooth() || material.transmission == Transmission::straight) return below;
-  return std::hypot(below, std::max(material.roughness.u, material.roughness.v));
+  return std::hypot(below, 0.3 * std::max(material.roughness.u, material.roughness.v));
 }
 
 double one_visit_of_product(double optical_depth, double m_i, double m_o) {

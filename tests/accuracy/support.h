@@ -37,7 +37,7 @@ struct SmallRecipe {
            "\nbase_ior = " + to_text(base_ior) + "\nabsorption_per_nm = " + to_text(absorption_per_nm) +
            "\npigment_thickness_nm = 2\nalbedo = " + (albedo_text.empty() ? to_text(albedo) : albedo_text) +
            "\n" + material + "\n[spectrum]\n" + spectrum + "\n[grid]\n" + grid +
-           "\n[table]\nprecision = \"float\"\nangles = " + std::to_string(cosines) +
+           "\n[table]\nencoding = \"dense\"\nprecision = \"float\"\nangles = " + std::to_string(cosines) +
            "\n[accuracy]\nnoise = " + to_text(noise) + "\n";
   }
   Recipe recipe() const { return parse_recipe(text(), "small.toml"); }

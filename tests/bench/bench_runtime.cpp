@@ -1,5 +1,6 @@
 // Nanoseconds per call of a table bound to one parameter point, of the live model at the same point, by walks
-// and exactly, and of Lambert as the yardstick, over the same random directions. Run:
+// and exactly, and of Lambert, over the same random directions; and of one plain look-up, the yardstick of
+// docs/performance.md. Run:
 // build/release/bin/bench_runtime
 #include <benchmark/benchmark.h>
 
@@ -11,6 +12,7 @@
 #include "sunbeam/lambert.h"
 #include "sunbeam/table_bsdf.h"
 #include "sunbeam/table_io.h"
+#include "tests/bench/yardstick.h"
 
 namespace sunbeam {
 namespace {
@@ -85,6 +87,13 @@ void sample(benchmark::State& state, const Bsdf& bsdf) {
   for (auto _ : state) benchmark::DoNotOptimize(bsdf.sample(pairs[k++ % kPairs].wo, rng));
 }
 
+void yardstick(benchmark::State& state) {
+  const Yardstick look_up;
+  std::size_t k = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(look_up(k++));
+}
+
+BENCHMARK(yardstick);
 BENCHMARK_CAPTURE(eval, lambert, lambert_bsdf());
 BENCHMARK_CAPTURE(eval, table, table_bsdf());
 BENCHMARK_CAPTURE(eval, exact, exact_bsdf());

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "sunbeam/core/file.h"
+#include "sunbeam/core/warp.h"
 #include "sunbeam/table_bsdf.h"
 #include "tests/table/support.h"
 

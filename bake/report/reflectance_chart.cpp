@@ -1,0 +1,59 @@
+#include "bake/report/reflectance_chart.h"
+
+#include <fmt/format.h>
+
+#include "bake/parallel_tasks.h"
+#include "bake/report/appearance.h"
+#include "bake/report/chart.h"
+#include "bake/report/markup.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr int kColumns = 240, kRows = 120;
+constexpr std::size_t kCurvePoints = 181;
+constexpr double kLeft = 60, kFrameWidth = 480;
+
+// One thickness still makes a strip: its neighbours are copies.
+std::pair<double, double> thickness_range(const Axis& axis) {
+  return axis.size() > 1 ? std::pair(axis.low(), axis.high()) : std::pair(axis.low() - 1, axis.low() + 1);
+}
+
+Image color_map(const Table& table, Parameters parameters) {
+  const auto [low, high] = thickness_range(table.parameter_axis(0));
+  Image image(kColumns, kRows);
+  run_parallel_tasks(kColumns, 0, {}, [&](std::size_t column) {
+    Parameters at = parameters;
+    at.film_thickness_nm = lerp((static_cast<double>(column) + 0.5) / kColumns, low, high);
+    const TableAppearance film(table, at, OutsideGrid::clamp);
+    for (int y = 0; y < kRows; ++y)
+      image.set(static_cast<int>(column), y,
+                film.film_reflectance(std::cos((1 - (y + 0.5) / kRows) * kPi / 2)));
+  });
+  return image;
+}
+
+}  // namespace
+
+std::string reflectance_chart(const Table& table, const Parameters& parameters) {
+  const TableAppearance film(table, parameters, OutsideGrid::refuse);
+  const auto [low, high] = thickness_range(table.parameter_axis(0));
+  Chart map({"film_thickness_nm (nm)", low, high}, {"theta (degrees)", 0, 90}, {kLeft, 16, kFrameWidth, 190});
+  map.picture(png_data_uri(color_map(table, parameters)));
+
+  Chart curves({"theta (degrees)", 0, 90}, {"reflectance", 0, 1}, {kLeft, 276, kFrameWidth, 190});
+  for (int c = 0; c < 3; ++c) {
+    std::vector<ChartPoint> points;
+    for (std::size_t k = 0; k < kCurvePoints; ++k) {
+      const double degrees = 90.0 * static_cast<double>(k) / (kCurvePoints - 1);
+      points.push_back({degrees, film.film_reflectance(std::cos(degrees * kPi / 180))[c]});
+    }
+    curves.line(points, kRgbColors[c], 2);
+  }
+  curves.note(fmt::format("film_thickness_nm {:g}, base_ior {:g}", parameters.film_thickness_nm,
+                          parameters.base_ior));
+  const LegendEntry channels[] = {{kRgbColors[0], "R"}, {kRgbColors[1], "G"}, {kRgbColors[2], "B"}};
+  return map.svg() + curves.svg() + svg_legend(kLeft, kReflectanceHeight - 8, channels);
+}
+
+}  // namespace sunbeam

@@ -48,7 +48,8 @@ std::vector<double> ChartAxis::ticks() const {
     return ticks;
   }
   const double step = round_step((high - low) / kTicks);
-  for (double k = std::ceil(low / step - 1e-9); k <= high / step + 1e-9; ++k) ticks.push_back(k * step);
+  for (double k = std::ceil(low / step - 1e-9); k <= high / step + 1e-9; ++k)
+    ticks.push_back(k * step + 0.0);  // no -0
   return ticks;
 }
 

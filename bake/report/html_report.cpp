@@ -19,7 +19,10 @@ namespace {
 constexpr std::size_t kWorstPoints = 6;
 constexpr int kSpherePixels = 132, kSliceHeight = 96;
 
-std::string percent(double share) { return fmt::format("{:.3g} %", 100 * share); }
+std::string percent(double share) {
+  constexpr double kLeast = 1e-8;
+  return share > 0 && share < kLeast ? "under 1e-6 %" : fmt::format("{:.3g} %", 100 * share);
+}
 
 std::string section(std::string_view id, std::string_view title, std::string_view text,
                     std::string_view content) {

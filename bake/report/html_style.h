@@ -26,7 +26,7 @@ section > p, .lead { max-width: 76ch; margin: 0 0 16px; color: var(--faint); }
 .card span, .card small, figcaption { color: var(--faint); font-size: 13px; }
 .card data { font-size: 24px; font-weight: 600; font-variant-numeric: tabular-nums; }
 .grid { display: flex; flex-wrap: wrap; gap: 14px; }
-figure { margin: 0; padding: 12px; background: var(--panel); border: 1px solid var(--edge); border-radius: 10px; }
+figure { margin: 0; width: fit-content; box-sizing: border-box; max-width: 100%; padding: 12px; background: var(--panel); border: 1px solid var(--edge); border-radius: 10px; }
 figcaption { margin-top: 8px; text-align: center; }
 #slices figcaption, #spheres figcaption, #worst figcaption { width: 0; min-width: 100%; }
 svg { max-width: 100%; height: auto; display: block; }

@@ -102,7 +102,7 @@ std::string Chart::frame() const {
     grid += fmt::format("M{:g} {:.1f}h{:g}", box_.x, py(tick), box_.width);
     labels += svg_text(box_.x - 6, py(tick) + 4, "end", fmt::format("{:.4g}", tick));
   }
-  const double middle = box_.y + box_.height / 2, left = box_.x - 40;
+  const double middle = box_.y + box_.height / 2, left = box_.x - 46;
   labels += fmt::format(
       R"svg(<text x="{0:g}" y="{1:g}" text-anchor="middle" fill="currentColor" transform="rotate(-90 {0:g} {1:g})">{2}</text>)svg",
       left, middle, escape_markup(y_.label));

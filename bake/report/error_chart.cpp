@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kBins = 14;
 constexpr std::size_t kMostDots =
     2000;  // more only make the page heavy; points are random, the first will do
-constexpr double kLeft = 56, kFrameWidth = 430;
+constexpr double kLeft = 60, kFrameWidth = 430;
 
 using Member = double VerifyPoint::*;
 

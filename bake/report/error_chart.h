@@ -19,7 +19,7 @@ struct ErrorAxis {
 // The parameters that the table sweeps, and theta_i.
 std::vector<ErrorAxis> error_axes(const Table& table, const VerifyReport& report);
 
-inline constexpr double kErrorChartWidth = 500, kErrorChartHeight = 380;
+inline constexpr double kErrorChartWidth = 500, kErrorChartHeight = 362;
 
 // Above the error with its median and 99th percentile, below, on the same scale, the noise of the comparison:
 // what of the error could be walks and not the table. SVG fragment.

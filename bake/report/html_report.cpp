@@ -179,10 +179,12 @@ std::string worst_section(const ReportSource& source) {
 
 std::string slices_section(const ReportSource& source) {
   const auto points = showcase(source.table);
+  const int threads = source.settings.threads;
   std::vector<Image> slices;
   double peak = 1e-12;
   for (const Parameters& p : points) {
-    slices.push_back(slice_image(TableAppearance(source.table, p, OutsideGrid::clamp), kSliceHeight));
+    slices.push_back(
+        slice_image(TableAppearance(source.table, p, OutsideGrid::clamp), kSliceHeight, threads));
     peak = std::max(peak, brightest(slices.back()));
   }
   std::string figures;
@@ -232,12 +234,14 @@ std::string sphere_row(const SpherePair& pair, double factor, const std::string&
 
 std::string spheres_section(const ReportSource& source) {
   const auto points = showcase(source.table);
+  const int threads = source.settings.threads;
   std::vector<SpherePair> pairs;
   double largest = 0;
   for (const Parameters& p : points) {
     const TableAppearance table(source.table, p, OutsideGrid::clamp);
     const LiveAppearance live(table.material(), source.recipe.spectrum);
-    pairs.push_back({sphere_image(table, kSpherePixels), sphere_image(live, kSpherePixels)});
+    pairs.push_back(
+        {sphere_image(table, kSpherePixels, threads), sphere_image(live, kSpherePixels, threads)});
     largest = std::max(largest, brightest(difference(pairs.back())));
   }
   const double factor = amplification(largest);

@@ -33,6 +33,15 @@ Image color_map(const Table& table, Parameters parameters) {
   return image;
 }
 
+double curve_degrees(std::size_t k) { return 90.0 * static_cast<double>(k) / (kCurvePoints - 1); }
+
+std::vector<Rgb> reflectances(const TableAppearance& film) {
+  std::vector<Rgb> values;
+  for (std::size_t k = 0; k < kCurvePoints; ++k)
+    values.push_back(film.film_reflectance(std::cos(curve_degrees(k) * kPi / 180)));
+  return values;
+}
+
 }  // namespace
 
 std::string reflectance_chart(const Table& table, const Parameters& parameters) {
@@ -41,13 +50,17 @@ std::string reflectance_chart(const Table& table, const Parameters& parameters) 
   Chart map({"film_thickness_nm (nm)", low, high}, {"theta (degrees)", 0, 90}, {kLeft, 16, kFrameWidth, 190});
   map.picture(png_data_uri(color_map(table, parameters)));
 
-  Chart curves({"theta (degrees)", 0, 90}, {"reflectance", 0, 1}, {kLeft, 276, kFrameWidth, 190});
+  // Colours outside Rec.709 leave 0 to 1.
+  const std::vector<Rgb> values = reflectances(film);
+  double lowest = 0, highest = 1;
+  for (const Rgb& value : values) {
+    lowest = std::min({lowest, value.r, value.g, value.b});
+    highest = std::max(highest, max_component(value));
+  }
+  Chart curves({"theta (degrees)", 0, 90}, {"reflectance", lowest, highest}, {kLeft, 276, kFrameWidth, 190});
   for (int c = 0; c < 3; ++c) {
     std::vector<ChartPoint> points;
-    for (std::size_t k = 0; k < kCurvePoints; ++k) {
-      const double degrees = 90.0 * static_cast<double>(k) / (kCurvePoints - 1);
-      points.push_back({degrees, film.film_reflectance(std::cos(degrees * kPi / 180))[c]});
-    }
+    for (std::size_t k = 0; k < values.size(); ++k) points.push_back({curve_degrees(k), values[k][c]});
     curves.line(points, kRgbColors[c], 2);
   }
   curves.note(fmt::format("film_thickness_nm {:g}, base_ior {:g}", parameters.film_thickness_nm,

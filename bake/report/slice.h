@@ -8,7 +8,7 @@
 namespace sunbeam {
 
 // Twice as wide as high.
-Image slice_image(const Appearance& skin, int height);
+Image slice_image(const Appearance& skin, int height, int threads = 0);
 
 // Largest component.
 double brightest(const Image& image);

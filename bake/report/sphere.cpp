@@ -96,11 +96,11 @@ Rgb pixel_color(const Appearance& skin, double x, double y, double pixel) {
 
 }  // namespace
 
-Image sphere_image(const Appearance& skin, int pixels) {
+Image sphere_image(const Appearance& skin, int pixels, int threads) {
   Image image(pixels, pixels);
   const double pixel = 2 / (kRadius * pixels);
   const auto at = [&](int k) { return (k + 0.5) * pixel - 1 / kRadius; };
-  run_parallel_tasks(static_cast<std::size_t>(pixels), 0, {}, [&](std::size_t row) {
+  run_parallel_tasks(static_cast<std::size_t>(pixels), threads, {}, [&](std::size_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < pixels; ++x) image.set(x, y, pixel_color(skin, at(x), -at(y), pixel));
   });

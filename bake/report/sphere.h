@@ -8,6 +8,6 @@
 
 namespace sunbeam {
 
-Image sphere_image(const Appearance& skin, int pixels);
+Image sphere_image(const Appearance& skin, int pixels, int threads = 0);
 
 }  // namespace sunbeam

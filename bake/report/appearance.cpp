@@ -3,11 +3,6 @@
 #include <fmt/format.h>
 
 namespace sunbeam {
-namespace {
-
-constexpr int kEstimates = 16;
-
-}  // namespace
 
 std::vector<Rgb> TableAppearance::rest(const Vec3& a, std::span<const Vec3> b) const {
   std::vector<Rgb> values;
@@ -15,9 +10,10 @@ std::vector<Rgb> TableAppearance::rest(const Vec3& a, std::span<const Vec3> b) c
   return values;
 }
 
-LiveAppearance::LiveAppearance(const Material& material, const Spectrum& spectrum)
+LiveAppearance::LiveAppearance(const Material& material, const Spectrum& spectrum, int estimates)
     : material_(material),
       estimator_(automatic_for_render(material).estimator),
+      estimates_(estimates),
       pfmc_(material, spectrum.wavelengths(material)),
       to_rec709_(rgb_to_rgb(spectrum.color_space(), ColorSpace::rec709)) {
   if (estimator_ == Estimator::exact) exact_.emplace(material, spectrum.wavelengths(material));
@@ -36,15 +32,15 @@ std::vector<Rgb> LiveAppearance::rest(const Vec3& a, std::span<const Vec3> b) co
 std::vector<Rgb> LiveAppearance::walked_rest(const Vec3& a, std::span<const Vec3> b) const {
   std::vector<Rgb> sums(b.size());
   Rng rng(/*seed=*/1, /*stream=*/0);
-  for (int k = 0; k < kEstimates; ++k) pfmc_.add_rest(a, b, rng, sums, technique_of(estimator_));
-  for (Rgb& sum : sums) sum = sum / kEstimates;
+  for (int k = 0; k < estimates_; ++k) pfmc_.add_rest(a, b, rng, sums, technique_of(estimator_));
+  for (Rgb& sum : sums) sum = sum / estimates_;
   return sums;
 }
 
-std::string live_method(const Material& material) {
+std::string live_method(const Material& material, int estimates) {
   const Estimator estimator = automatic_for_render(material).estimator;
   if (estimator == Estimator::exact) return "exact-quadrature, without noise";
-  return fmt::format("{}, {} estimates a direction, a little noisy", name_of(estimator), kEstimates);
+  return fmt::format("{}, {} estimates a direction, a little noisy", name_of(estimator), estimates);
 }
 
 }  // namespace sunbeam

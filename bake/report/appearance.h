@@ -42,11 +42,15 @@ class TableAppearance final : public Appearance {
   ColorMatrix to_rec709_;
 };
 
+// Estimates of a live direction where there is no exact evaluator: of a picture's thousands, of a curve's
+// few.
+inline constexpr int kPictureEstimates = 16, kCurveEstimates = 512;
+
 // Exact where a renderer's exact evaluator is valid, else walks that use the same random numbers at every
 // direction `a`: what noise is left varies smoothly over a picture.
 class LiveAppearance final : public Appearance {
  public:
-  LiveAppearance(const Material& material, const Spectrum& spectrum);
+  LiveAppearance(const Material& material, const Spectrum& spectrum, int estimates);
 
   const Material& material() const override { return material_; }
   Rgb first(const Vec3& a, const Vec3& b) const override { return to_rec709_ * pfmc_.first(a, b); }
@@ -58,12 +62,13 @@ class LiveAppearance final : public Appearance {
 
   Material material_;
   Estimator estimator_;
+  int estimates_;
   Pfmc pfmc_;
   std::optional<ExactBsdf> exact_;
   ColorMatrix to_rec709_;
 };
 
 // How the rest of LiveAppearance is found, for a caption.
-std::string live_method(const Material& material);
+std::string live_method(const Material& material, int estimates);
 
 }  // namespace sunbeam

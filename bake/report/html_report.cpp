@@ -147,7 +147,7 @@ std::string worst_row(std::size_t rank, const VerifyPoint& p) {
 
 std::string worst_plot(const ReportSource& source, std::size_t rank, const VerifyPoint& p) {
   const TableAppearance table(source.table, p.parameters, OutsideGrid::clamp);
-  const LiveAppearance live(table.material(), source.recipe.spectrum);
+  const LiveAppearance live(table.material(), source.recipe.spectrum, kCurveEstimates);
   const std::string caption =
       fmt::format("{}: {}, theta_i {:.1f}\u00b0, error {}", rank, describe(source.table, p.parameters),
                   std::acos(p.cos_i) * 180 / kPi, percent(p.error));
@@ -170,7 +170,7 @@ std::string worst_section(const ReportSource& source) {
           "BRDF times cosine in the plane of incidence, linear Rec.709; the radius is the square root "
           "of the value. The grey ray is the light, a dashed one a smooth film's mirror direction. "
           "Live: {}.",
-          live_method(source.table.material)),
+          live_method(source.table.material, kCurveEstimates)),
       "<div class=\"wide\"><table>\n<thead><tr><th></th><th>film_thickness_nm</th><th>base_ior</th>"
       "<th>absorption_per_nm</th><th>theta_i (\u00b0)</th><th>phi_i (\u00b0)</th><th>error</th>"
       "<th>noise</th><th>Dirac error</th></tr></thead>\n<tbody>\n" +
@@ -239,7 +239,7 @@ std::string spheres_section(const ReportSource& source) {
   double largest = 0;
   for (const Parameters& p : points) {
     const TableAppearance table(source.table, p, OutsideGrid::clamp);
-    const LiveAppearance live(table.material(), source.recipe.spectrum);
+    const LiveAppearance live(table.material(), source.recipe.spectrum, kPictureEstimates);
     pairs.push_back(
         {sphere_image(table, kSpherePixels, threads), sphere_image(live, kSpherePixels, threads)});
     largest = std::max(largest, brightest(difference(pairs.back())));
@@ -251,7 +251,7 @@ std::string spheres_section(const ReportSource& source) {
   return section("spheres", "On a sphere",
                  fmt::format("Table, live, and their difference times {:g}, under one light and a grey sky; "
                              "parameters half-way between nodes, where interpolation is weakest. Live: {}.",
-                             factor, live_method(source.table.material)),
+                             factor, live_method(source.table.material, kPictureEstimates)),
                  "<div class=\"grid\">\n" + figures + "</div>");
 }
 

@@ -55,7 +55,7 @@ std::string grid(double peak) {
   for (const double share : {0.25, 0.5, 0.75, 1.0}) {
     data += fmt::format("M{0:g} {1:g}A{2:g} {2:g} 0 0 1 {3:g} {1:g}", kCentreX - share * kRadius, kCentreY,
                         share * kRadius, kCentreX + share * kRadius);
-    if (share >= 0.5)
+    if (share == 0.5 || share == 1)
       labels += svg_text(kCentreX + share * kRadius, kCentreY + 14, "middle",
                          fmt::format("{:.2g}", peak * square(share)));
   }

@@ -34,13 +34,21 @@ struct EvalOptions {
 int run_eval(const EvalOptions& options);
 
 struct VerifyOptions {
-  std::string table, json;
+  std::string table, json, html;
   std::string truth;  // empty: the default of the recipe
   int points = 1000;
   int threads = 0;
   std::uint64_t seed = 2024;
 };
 int run_verify(const VerifyOptions& options);
+
+struct PlotOptions {
+  std::string table, output, what;
+  // The table's defaults if not given.
+  std::optional<double> film_thickness_nm, base_ior, absorption_per_nm;
+  std::optional<double> theta_i_deg;  // of --what polar
+};
+int run_plot(const PlotOptions& options);
 
 struct RenderOptions {
   std::string scene, output, stats;

@@ -96,16 +96,34 @@ void add_eval(CLI::App& app, EvalOptions& o, int& exit_code) {
 void add_verify(CLI::App& app, VerifyOptions& o, int& exit_code) {
   CLI::App* command =
       add_command(app, "verify", "Hold a table against live evaluation at random held-out points",
-                  "sunbeam verify skin.exr --json report.json");
+                  "sunbeam verify skin.exr --json report.json --html report.html");
   command->add_option("table", o.table, "Table (.exr or .vdb)")->required();
   command->add_option("--points", o.points, "Random points")->check(whole_number(1, 100000000));
   command->add_option("--truth", o.truth, "What to hold it against")
       ->check(CLI::IsMember({"pfmc", "bidirectional", "exact"}));
   command->add_option("--json", o.json, "Write the figures to this file");
+  command->add_option("--html", o.html, "Write a report with charts and pictures to this file (.html)");
   add_threads(command, o.threads);
   command->add_option("--seed", o.seed, "Random seed; point k uses stream k")
       ->check(whole_number(0, kAnySeed));
   command->callback([&] { exit_code = run_verify(o); });
+}
+
+void add_plot(CLI::App& app, PlotOptions& o, int& exit_code) {
+  CLI::App* command =
+      add_command(app, "plot", "Draw one picture of a table",
+                  "sunbeam plot skin.exr --what sphere -o sphere.png --film-thickness-nm 350");
+  command->add_option("table", o.table, "Table (.exr or .vdb)")->required();
+  command->add_option("-o,--output", o.output, "Picture to write: .png for slice and sphere, .svg for charts")
+      ->required();
+  command->add_option("--what", o.what, "What to draw")
+      ->required()
+      ->check(CLI::IsMember({"polar", "slice", "sphere", "reflectance"}));
+  command->add_option("--film-thickness-nm", o.film_thickness_nm, "Film thickness; default: the table's own");
+  command->add_option("--base-ior", o.base_ior, "Index below the film; default: the table's own");
+  command->add_option("--absorption-per-nm", o.absorption_per_nm, "Absorption; default: the table's own");
+  command->add_option("--theta-i", o.theta_i_deg, "Angle of the light, degrees, for polar; default: 30");
+  command->callback([&] { exit_code = run_plot(o); });
 }
 
 void add_render(CLI::App& app, RenderOptions& o, int& exit_code) {
@@ -166,11 +184,13 @@ int run(int argc, char** argv) {
   InfoOptions info;
   EvalOptions eval;
   VerifyOptions verify;
+  PlotOptions plot;
   RenderOptions render;
   add_bake(app, bake, exit_code);
   add_info(app, info, exit_code);
   add_eval(app, eval, exit_code);
   add_verify(app, verify, exit_code);
+  add_plot(app, plot, exit_code);
   add_render(app, render, exit_code);
   refuse_unknown(app, argc, argv);
   try {

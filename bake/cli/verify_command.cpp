@@ -1,11 +1,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstring>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "bake/cli/commands.h"
 #include "bake/cli/progress.h"
 #include "bake/recipe.h"
+#include "bake/report/html_report.h"
 #include "bake/verify.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/file.h"
@@ -40,6 +44,35 @@ std::string report_json(const VerifyReport& report) {
   return json.dump(2) + "\n";
 }
 
+// In single quotes where a shell would read more than a word.
+std::string shell_word(const std::string& text) {
+  const auto is_plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("._-/+,:@%", c); };
+  if (!text.empty() && std::all_of(text.begin(), text.end(), is_plain)) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string command_of(const VerifyOptions& options) {
+  const std::string truth = options.truth.empty() ? "" : " --truth " + options.truth;
+  return fmt::format("sunbeam verify {} --points {} --seed {}{} --html {}", shell_word(options.table),
+                     options.points, options.seed, truth, shell_word(options.html));
+}
+
+void check_html(const std::string& path) {
+  if (extension(path) != ".html")
+    throw Error(fmt::format("{}: extension is '{}'; allowed for --html: .html", path, extension(path)));
+  require_writable(path);
+}
+
+void write_html(const VerifyOptions& options, const Table& table, const Recipe& recipe,
+                const VerifySettings& settings, const VerifyReport& report) {
+  const std::filesystem::path path = options.table;
+  const ReportSource source = {
+      table, recipe, settings, report, path.filename().string(), file_size(path), command_of(options)};
+  write_file_atomically(options.html, html_report(source));
+}
+
 Estimator truth_of(const VerifyOptions& options, const Recipe& recipe) {
   if (options.truth.empty()) return default_truth(recipe);
   try {
@@ -55,6 +88,7 @@ int run_verify(const VerifyOptions& options) {
   const Table table = load_table(options.table);
   const Recipe recipe = parse_recipe(table.info.at("recipe"), options.table + ": recipe");
   if (!options.json.empty()) require_writable(options.json);
+  if (!options.html.empty()) check_html(options.html);
   VerifySettings settings;
   settings.points = options.points;
   settings.seed = options.seed;
@@ -69,6 +103,7 @@ int run_verify(const VerifyOptions& options) {
   for (const auto& [name, value] : figures(report)) fmt::print("{:<20}{:.6g}\n", name, value);
   print_worst(report);
   if (!options.json.empty()) write_file_atomically(options.json, report_json(report));
+  if (!options.html.empty()) write_html(options, table, recipe, settings, report);
 
   const bool passed = within_tolerance(report, settings);
   fmt::print("{}: median {:.4g} (tolerance {:g}), p99 {:.4g} (tolerance {:g})\n", passed ? "PASS" : "FAIL",

@@ -153,9 +153,7 @@ ExrImage read_exr(const std::string& path) {
   }
 }
 
-ClipAccount write_png(const std::string& path, const Image& image) {
-  require_pixels(path, image);
-  ClipAccount account;
+std::string png_bytes(const Image& image, ClipAccount& account) {
   const std::vector<png_byte> pixels = srgb_pixels(image, account);
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
@@ -165,9 +163,15 @@ ClipAccount write_png(const std::string& path, const Image& image) {
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
   std::string bytes(size, '\0');
   if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, pixels.data(), 0, nullptr))
-    throw Error(fmt::format("{}: cannot write the PNG file: {}", path, png.message));
+    throw Error(fmt::format("cannot encode the picture as PNG: {}", png.message));
   bytes.resize(size);
-  write_file_atomically(path, bytes);
+  return bytes;
+}
+
+ClipAccount write_png(const std::string& path, const Image& image) {
+  require_pixels(path, image);
+  ClipAccount account;
+  write_file_atomically(path, png_bytes(image, account));
   return account;
 }
 

@@ -27,6 +27,9 @@ ExrImage read_exr(const std::string& path);
 // to 0: returns how often and how much light that added.
 ClipAccount write_png(const std::string& path, const Image& image);
 
+// The content of such a file; the image must not be empty.
+std::string png_bytes(const Image& image, ClipAccount& account);
+
 // Scene-linear to display-linear, [0, 1]. Up to 0.5 nothing changes; above, a smooth shoulder approaches 1.
 // Half of the result keeps the ratios of the channels, so that a bright iridescent highlight keeps its hue,
 // and half compresses each channel alone, so that a very bright one still turns towards white.

@@ -7,7 +7,7 @@ import unittest
 
 import support
 
-COMMANDS = ("bake", "info", "eval", "verify", "render")
+COMMANDS = ("bake", "info", "eval", "verify", "plot", "render")
 
 
 class Help(support.CliTest):
@@ -30,7 +30,8 @@ class Help(support.CliTest):
             "bake": ("--output", "--set", "--threads", "--seed"),
             "info": ("--json",),
             "eval": ("--points", "--quantity", "--estimator", "--set", "--samples", "--seed"),
-            "verify": ("--points", "--json", "--threads", "--seed"),
+            "verify": ("--points", "--json", "--html", "--threads", "--seed"),
+            "plot": ("--output", "--what", "--film-thickness-nm", "--base-ior", "--absorption-per-nm", "--theta-i"),
             "render": ("--output", "--material", "--estimator", "--size", "--spp", "--threads", "--seed", "--stats"),
         }
         for command, names in options.items():

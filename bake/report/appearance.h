@@ -1,0 +1,74 @@
+// What the pictures of a report ask of a material, from a table or live: its parts, deterministic, in linear
+// Rec.709. Each is symmetric in its two directions.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bake/estimator.h"
+#include "bake/live/exact_bsdf.h"
+#include "bake/live/spectrum.h"
+#include "sunbeam/core/color_space.h"
+#include "sunbeam/table_bsdf.h"
+
+namespace sunbeam {
+
+class Appearance {
+ public:
+  virtual ~Appearance() = default;
+  virtual const Material& material() const = 0;
+  virtual Rgb first(const Vec3& a, const Vec3& b) const = 0;  // 1/sr
+  virtual Rgb dirac(const Vec3& a) const = 0;                 // weight of a smooth film's mirror direction
+  // For every b; 1/sr. Live walks from a serve them all.
+  virtual std::vector<Rgb> rest(const Vec3& a, std::span<const Vec3> b) const = 0;
+};
+
+class TableAppearance final : public Appearance {
+ public:
+  TableAppearance(const Table& table, const Parameters& parameters, OutsideGrid outside)
+      : bsdf_(table, parameters, outside), to_rec709_(rgb_to_rgb(table.color_space(), ColorSpace::rec709)) {}
+
+  const Material& material() const override { return bsdf_.material(); }
+  Rgb first(const Vec3& a, const Vec3& b) const override { return to_rec709_ * bsdf_.first(a, b); }
+  Rgb dirac(const Vec3& a) const override { return to_rec709_ * bsdf_.dirac(a); }
+  std::vector<Rgb> rest(const Vec3& a, std::span<const Vec3> b) const override;
+  Rgb film_reflectance(double cosine) const { return to_rec709_ * bsdf_.film_reflectance(cosine); }
+
+ private:
+  TableBsdf bsdf_;
+  ColorMatrix to_rec709_;
+};
+
+// Estimates of a live direction where there is no exact evaluator: of a picture's thousands, of a curve's
+// few.
+inline constexpr int kPictureEstimates = 16, kCurveEstimates = 512;
+
+// Exact where a renderer's exact evaluator is valid, else walks that use the same random numbers at every
+// direction `a`: what noise is left varies smoothly over a picture.
+class LiveAppearance final : public Appearance {
+ public:
+  LiveAppearance(const Material& material, const Spectrum& spectrum, int estimates);
+
+  const Material& material() const override { return material_; }
+  Rgb first(const Vec3& a, const Vec3& b) const override { return to_rec709_ * pfmc_.first(a, b); }
+  Rgb dirac(const Vec3& a) const override { return to_rec709_ * pfmc_.dirac(a); }
+  std::vector<Rgb> rest(const Vec3& a, std::span<const Vec3> b) const override;
+
+ private:
+  std::vector<Rgb> walked_rest(const Vec3& a, std::span<const Vec3> b) const;
+
+  Material material_;
+  Estimator estimator_;
+  int estimates_;
+  Pfmc pfmc_;
+  std::optional<ExactBsdf> exact_;
+  ColorMatrix to_rec709_;
+};
+
+// How the rest of LiveAppearance is found, for a caption.
+std::string live_method(const Material& material, int estimates);
+
+}  // namespace sunbeam

@@ -1,0 +1,19 @@
+// Text and pictures inside HTML and SVG.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "runtime/tracer/image.h"
+
+namespace sunbeam {
+
+// With the characters escaped that mean something in markup, in attributes too.
+std::string escape_markup(std::string_view text);
+
+std::string base64(std::string_view bytes);
+
+// A linear Rec.709 picture as a PNG inside a URI, so that a page needs no other file.
+std::string png_data_uri(const Image& image);
+
+}  // namespace sunbeam

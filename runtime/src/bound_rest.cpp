@@ -50,26 +50,17 @@ float BoundRest::quadrant(const Vec3& w) {
   return static_cast<float>(std::atan2(std::abs(w.y), std::abs(w.x)) * (2 / kPi));
 }
 
-Color4 BoundRest::at_cosines(float cos_o, float cos_i) const {
-  const Color4 scale = sunbeam::lerp(scale_.data(), EvenPosition(cos_o, fine_.cosines)) *
-                       sunbeam::lerp(scale_.data(), EvenPosition(cos_i, fine_.cosines));
-  const EvenPosition o(std::sqrt(cos_o), coarse_.cosines), i(std::sqrt(cos_i), coarse_.cosines);
-  const Color4* row = ratio_.data() + o.lower * coarse_.cosines;
-  const Color4 low = sunbeam::lerp(row, i), high = sunbeam::lerp(row + coarse_.cosines, i);
-  return scale * (low + o.upper_weight * (high - low));
-}
-
-Color4 BoundRest::scale_at(const Vec3& w, float phi) const {
-  const Place at = fine_.place(static_cast<float>(w.z), phi);
+Color4 BoundRest::scale_at(const Cosine& cosine, float phi) const {
+  const Place at = fine_.place(cosine, phi);
   const Color4* row = scale_.data() + at.cosine.lower * fine_.phis;
   const Color4 low = sunbeam::lerp(row, at.phi), high = sunbeam::lerp(row + fine_.phis, at.phi);
   return low + at.cosine.upper_weight * (high - low);
 }
 
-Color4 BoundRest::anisotropic(const Vec3& wo, const Vec3& wi) const {
+Color4 BoundRest::anisotropic(const Vec3& wo, const Vec3& wi, const Cosine& cos_o,
+                              const Cosine& cos_i) const {
   const float phi_o = quadrant(wo), phi_i = quadrant(wi);
-  const Place o = coarse_.place(static_cast<float>(wo.z), phi_o),
-              i = coarse_.place(static_cast<float>(wi.z), phi_i);
+  const Place o = coarse_.place(cos_o, phi_o), i = coarse_.place(cos_i, phi_i);
   Color4 ratio{};
   for (int a = 0; a < 2; ++a)
     for (int b = 0; b < 2; ++b) {
@@ -80,12 +71,7 @@ Color4 BoundRest::anisotropic(const Vec3& wo, const Vec3& wi) const {
       const Color4 low = sunbeam::lerp(row, i.phi), high = sunbeam::lerp(row + coarse_.phis, i.phi);
       ratio += weight * (low + i.cosine.upper_weight * (high - low));
     }
-  return scale_at(wo, phi_o) * scale_at(wi, phi_i) * ratio;
-}
-
-Color4 BoundRest::operator()(const Vec3& wo, const Vec3& wi) const {
-  if (fine_.phis == 1) return at_cosines(static_cast<float>(wo.z), static_cast<float>(wi.z));
-  return anisotropic(wo, wi);
+  return scale_at(cos_o, phi_o) * scale_at(cos_i, phi_i) * ratio;
 }
 
 }  // namespace sunbeam

@@ -16,11 +16,20 @@ class BoundRest {
  public:
   BoundRest(const FactoredRest& rest, Symmetry symmetry);
 
-  // 1/sr, for wo.z > 0 and wi.z > 0.
-  Color4 operator()(const Vec3& wo, const Vec3& wi) const;
+  // A direction's cosine and its root, > 0.
+  struct Cosine {
+    explicit Cosine(float c) : Cosine(c, std::sqrt(c)) {}
+    Cosine(float c, float root_of_c) : cosine(c), root(root_of_c) {}
+    float cosine, root;
+  };
 
-  // Of an isotropic table, all that matters.
-  Color4 at_cosines(float cos_o, float cos_i) const;
+  // 1/sr, for wo.z > 0 and wi.z > 0, whose cosines o and i are.
+  Color4 operator()(const Vec3& wo, const Vec3& wi, const Cosine& o, const Cosine& i) const {
+    return fine_.phis == 1 ? isotropic(o, i) : anisotropic(wo, wi, o, i);
+  }
+  Color4 operator()(const Vec3& wo, const Vec3& wi) const {
+    return (*this)(wo, wi, Cosine(static_cast<float>(wo.z)), Cosine(static_cast<float>(wi.z)));
+  }
 
  private:
   struct Place {
@@ -30,14 +39,22 @@ class BoundRest {
     int cosines, phis;
     bool by_root;  // nodes even in the root of the cosine
     int size() const { return cosines * phis; }
-    Place place(float cosine, float phi) const {
-      return {{by_root ? std::sqrt(cosine) : cosine, cosines}, {phi, phis}};
+    Place place(const Cosine& at, float phi) const {
+      return {{by_root ? at.root : at.cosine, cosines}, {phi, phis}};
     }
   };
   static float quadrant(const Vec3& w);
   static std::vector<FactoredRest::End> ends(const FactoredRest& rest, const Grid& grid);
-  Color4 scale_at(const Vec3& w, float phi) const;
-  Color4 anisotropic(const Vec3& wo, const Vec3& wi) const;
+  Color4 isotropic(const Cosine& o, const Cosine& i) const {
+    const Color4 scale = sunbeam::lerp(scale_.data(), EvenPosition(o.cosine, fine_.cosines)) *
+                         sunbeam::lerp(scale_.data(), EvenPosition(i.cosine, fine_.cosines));
+    const EvenPosition at_o(o.root, coarse_.cosines), at_i(i.root, coarse_.cosines);
+    const Color4* row = ratio_.data() + at_o.lower * coarse_.cosines;
+    const Color4 low = sunbeam::lerp(row, at_i), high = sunbeam::lerp(row + coarse_.cosines, at_i);
+    return scale * (low + at_o.upper_weight * (high - low));
+  }
+  Color4 anisotropic(const Vec3& wo, const Vec3& wi, const Cosine& o, const Cosine& i) const;
+  Color4 scale_at(const Cosine& at, float phi) const;
 
   Grid fine_, coarse_;
   std::vector<Color4> scale_, ratio_;

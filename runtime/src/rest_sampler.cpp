@@ -41,13 +41,4 @@ double RestSampler::sample(const EvenPosition& viewer, double u) const {
   return (static_cast<double>(bin) + std::clamp(position, 0x1p-24, kBelowOne)) / kBins;
 }
 
-float RestSampler::pdf(const EvenPosition& viewer, float root) const {
-  const int bin = std::min(static_cast<int>(root * kBins), kBins - 1);
-  const auto row = static_cast<std::size_t>(viewer.lower);
-  const float low = rows_[row].density[static_cast<std::size_t>(bin)],
-              high = rows_[row + 1].density[static_cast<std::size_t>(bin)];
-  constexpr float kPerSolidAngle = static_cast<float>(kInvPi / 4);  // d(root) / d(cosine) / (2 pi)
-  return (low + viewer.upper_weight * (high - low)) * kPerSolidAngle / root;
-}
-
 }  // namespace sunbeam

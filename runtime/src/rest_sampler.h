@@ -33,8 +33,15 @@ class RestSampler {
 
   // Root of cos(theta_i); u in [0, 1).
   double sample(const EvenPosition& viewer, double u) const;
-  // Of a direction whose root that is, 1/sr.
-  float pdf(const EvenPosition& viewer, float root) const;
+  // Of a direction whose root that is, 1/sr; `per_root` = 1 / root.
+  float pdf(const EvenPosition& viewer, float root, float per_root) const {
+    const int bin = std::min(static_cast<int>(root * kBins), kBins - 1);
+    const Row* row = rows_.data() + viewer.lower;
+    const float low = row[0].density[static_cast<std::size_t>(bin)],
+                high = row[1].density[static_cast<std::size_t>(bin)];
+    constexpr float kPerSolidAngle = static_cast<float>(kInvPi / 4);  // d(root) / d(cosine) / (2 pi)
+    return (low + viewer.upper_weight * (high - low)) * kPerSolidAngle * per_root;
+  }
 
  private:
   struct Row {

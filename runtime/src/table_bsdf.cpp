@@ -52,11 +52,42 @@ class FactoredAzimuthMean {
 
 }  // namespace
 
+// What of GGX does not depend on directions, in floats.
+struct FloatGgx {
+  explicit FloatGgx(const Roughness& roughness)
+      : u2(static_cast<float>(square(roughness.u))),
+        v2(static_cast<float>(square(roughness.v))),
+        uv3_per_pi(
+            static_cast<float>(square(roughness.u * roughness.v) * roughness.u * roughness.v * kInvPi)),
+        least_alpha2(std::min(u2, v2)) {}
+
+  float root_squared(const Vec3& w) const {
+    const auto x = static_cast<float>(w.x), y = static_cast<float>(w.y), z = static_cast<float>(w.z);
+    return z * z + u2 * x * x + v2 * y * y;
+  }
+  float form(const Vec3& h) const {
+    const auto x = static_cast<float>(h.x), y = static_cast<float>(h.y), z = static_cast<float>(h.z);
+    return u2 * v2 * z * z + v2 * x * x + u2 * y * y;
+  }
+
+  float u2, v2, uv3_per_pi, least_alpha2;
+};
+
 struct BoundTable {
   BoundTable(const Table& table, const Material& at);
 
+  struct Parts {
+    Color4 first, rest;
+    float pdf;
+  };
+  Parts parts(const Vec3& wo, const Vec3& wi) const;
   Rgb rest(const Vec3& wo, const Vec3& wi) const;
+  Color4 rest_at(const Vec3& wo, const Vec3& wi, const BoundRest::Cosine& o,
+                 const BoundRest::Cosine& i) const;
   Rgb film_reflectance(double cosine) const;
+  Color4 film_at(float cosine) const {
+    return sunbeam::lerp(film.data(), EvenPosition(std::min(cosine, 1.0f), kFilmNodes));
+  }
   Rgb first_albedo(const Vec3& wo, int nodes) const;
   Rgb rest_albedo(const Vec3& wo) const;
   template <class Mean>
@@ -68,7 +99,8 @@ struct BoundTable {
   Material material;
   Symmetry symmetry;
   double noise = 0;  // relative standard error of a factored rest
-  Ggx ggx;
+  Ggx normals;
+  FloatGgx ggx;
   bool smooth;
   std::variant<std::monostate, DenseRest, BoundRest> rest_;
   std::vector<Color4> film;
@@ -76,7 +108,12 @@ struct BoundTable {
 };
 
 BoundTable::BoundTable(const Table& table, const Material& at)
-    : material(at), symmetry(table.symmetry), ggx(at.roughness), smooth(at.is_smooth()), film(kFilmNodes) {
+    : material(at),
+      symmetry(table.symmetry),
+      normals(at.roughness),
+      ggx(at.roughness),
+      smooth(at.is_smooth()),
+      film(kFilmNodes) {
   const auto cosine_of = [](int node) { return static_cast<double>(node) / (kFilmNodes - 1); };
   if (table.is_factored()) {
     const FactoredRest factored(table, material);
@@ -102,9 +139,41 @@ Rgb BoundTable::rest(const Vec3& wo, const Vec3& wi) const {
   return std::get<DenseRest>(rest_)(wo, wi);
 }
 
+Color4 BoundTable::rest_at(const Vec3& wo, const Vec3& wi, const BoundRest::Cosine& o,
+                           const BoundRest::Cosine& i) const {
+  if (const auto* factored = std::get_if<BoundRest>(&rest_)) return (*factored)(wo, wi, o, i);
+  return to_color4(std::get<DenseRest>(rest_)(wo, wi));
+}
+
 Rgb BoundTable::film_reflectance(double cosine) const {
-  const auto clamped = static_cast<float>(std::clamp(cosine, 0.0, 1.0));
-  return to_rgb(sunbeam::lerp(film.data(), EvenPosition(clamped, kFilmNodes)));
+  return to_rgb(film_at(static_cast<float>(std::max(cosine, 0.0))));
+}
+
+// The lobe of ggx.h and its bounded density, with h = wo + wi not normalised and all roots and divisions four
+// at a time: with l = |h|, q = D's quadratic form of h, r = cosine (1 + 2 Lambda), s = 1 + sin_o and a the
+// lesser roughness,
+//     D = uv3 l^4 / (pi q^2),  first = D R / (2 (r_o c_i + r_i c_o)),
+//     pdf = D / (2 (k c_o + r_o)),  k = (1 - a^2) s^2 / (s^2 + a^2 c_o^2).
+BoundTable::Parts BoundTable::parts(const Vec3& wo, const Vec3& wi) const {
+  const auto c_o = static_cast<float>(wo.z), c_i = static_cast<float>(wi.z);
+  const Color4 roots = sqrt4(Color4{c_o, c_i, ggx.root_squared(wo), ggx.root_squared(wi)});
+  const BoundRest::Cosine o(c_o, roots[0]), i(c_i, roots[1]);
+  const EvenPosition viewer = sampler.viewer(o.root);
+  const float chance = sampler.first_chance(viewer);
+
+  const Vec3 h = wo + wi;
+  const float l2 = static_cast<float>(dot(h, h)), q = ggx.form(h);
+  const Color4 more = sqrt4(Color4{l2, std::max(0.0f, 1 - c_o * c_o), 1, 1});
+  const float s2 = (1 + more[1]) * (1 + more[1]), a2 = ggx.least_alpha2, bound = s2 + a2 * c_o * c_o;
+  const float to_first = 2 * (roots[2] * c_i + roots[3] * c_o);
+  const float to_pdf = 2 * ((1 - a2) * s2 * c_o + bound * roots[2]);
+  const Color4 per = Color4{1, 1, 1, 1} / Color4{i.root, q * q, to_first, to_pdf};
+
+  const Color4 rest = rest_at(wo, wi, o, i);
+  const float rest_pdf = (1 - chance) * sampler.pdf(viewer, i.root, per[0]);
+  if (smooth) return {Color4{}, rest, rest_pdf};
+  const float d = ggx.uv3_per_pi * l2 * l2 * per[1];
+  return {(d * per[2]) * film_at(0.5f * more[0]), rest, rest_pdf + chance * d * bound * per[3]};
 }
 
 // Int f_first cos dwi by midpoints in the unit square of visible normals, which turns it into a mean of R
@@ -115,9 +184,9 @@ Rgb BoundTable::first_albedo(const Vec3& wo, int nodes) const {
   for (int i = 0; i < nodes; ++i)
     for (int j = 0; j < nodes; ++j) {
       const Point2 u{(i + 0.5) / nodes, (j + 0.5) / nodes};
-      const Vec3 h = ggx.sample_visible(wo, u);
+      const Vec3 h = normals.sample_visible(wo, u);
       const Vec3 wi = reflect(wo, h);
-      if (wi.z > 0) sum += film_reflectance(dot(wo, h)) * ggx.g2_over_g1(wo, wi);
+      if (wi.z > 0) sum += film_reflectance(dot(wo, h)) * normals.g2_over_g1(wo, wi);
     }
   return sum / (nodes * nodes);
 }
@@ -184,9 +253,8 @@ Rgb TableBsdf::dirac(const Vec3& wo) const {
 }
 
 Rgb TableBsdf::first(const Vec3& wo, const Vec3& wi) const {
-  if (bound_->smooth || wo.z <= 0 || wi.z <= 0) return {};
-  const Vec3 h = normalize(wo + wi);
-  return bound_->ggx.reflection(wo, wi, h) * bound_->film_reflectance(dot(wo, h));
+  if (wo.z <= 0 || wi.z <= 0) return {};
+  return to_rgb(bound_->parts(wo, wi).first);
 }
 
 Rgb TableBsdf::rest(const Vec3& wo, const Vec3& wi) const {
@@ -206,15 +274,8 @@ Rgb TableBsdf::albedo(const Vec3& wo) const {
 
 EvalPdf TableBsdf::eval_pdf(const Vec3& wo, const Vec3& wi) const {
   if (wo.z <= 0 || wi.z <= 0) return {};
-  const BoundTable& b = *bound_;
-  const EvenPosition viewer = b.sampler.viewer(std::sqrt(static_cast<float>(wo.z)));
-  const double chance = b.sampler.first_chance(viewer);
-  EvalPdf result{b.rest(wo, wi), (1 - chance) * b.sampler.pdf(viewer, std::sqrt(static_cast<float>(wi.z)))};
-  if (b.smooth) return result;
-  const Vec3 h = normalize(wo + wi);
-  result.f += b.ggx.reflection(wo, wi, h) * b.film_reflectance(dot(wo, h));
-  result.pdf += chance * b.ggx.reflection_pdf_bounded(wo, h);
-  return result;
+  const auto parts = bound_->parts(wo, wi);
+  return {to_rgb(parts.first + parts.rest), parts.pdf};
 }
 
 std::optional<BsdfSample> TableBsdf::sample(const Vec3& wo, Rng& rng) const {
@@ -225,7 +286,7 @@ std::optional<BsdfSample> TableBsdf::sample(const Vec3& wo, Rng& rng) const {
   Vec3 wi;
   if (rng.uniform() < chance) {
     if (b.smooth) return BsdfSample{{-wo.x, -wo.y, wo.z}, b.film_reflectance(wo.z) / chance, true};
-    wi = reflect(wo, b.ggx.sample_visible_bounded(wo, {rng.uniform(), rng.uniform()}));
+    wi = reflect(wo, b.normals.sample_visible_bounded(wo, {rng.uniform(), rng.uniform()}));
   } else {
     const double root = b.sampler.sample(viewer, rng.uniform());
     wi = direction_from_cosine(root * root, 2 * kPi * rng.uniform());

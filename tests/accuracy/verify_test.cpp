@@ -227,7 +227,8 @@ TEST(Verify, FigureNames) {
                                      "dirac_error_p99", "energy_max", "reciprocity_max", "points"));
 }
 
-// The shipped small table states its own error: measured again, by the same code and seed, it is the same.
+// The shipped small table states its own error: measured again, by the same code and seed, it is the same; to
+// 2e-6, as instruction sets round the film's reflectance to 4e-7 differently.
 TEST(Golden, PreviewStatesItsError) {
   const std::string path = std::string(SUNBEAM_SOURCE_DIR) + "/tables/golden/preview.exr";
   ASSERT_TRUE(std::filesystem::exists(path))
@@ -236,6 +237,7 @@ TEST(Golden, PreviewStatesItsError) {
   const Recipe recipe = parse_recipe(table.info.at("recipe"), path);
   VerifySettings s;
   s.points = 250;
+  s.truth = default_truth(recipe);
   s.tolerance_median = recipe.accuracy.tolerance_median;
   s.tolerance_p99 = recipe.accuracy.tolerance_p99;
   const VerifyReport report = verify(table, s);
@@ -243,7 +245,7 @@ TEST(Golden, PreviewStatesItsError) {
     ASSERT_TRUE(table.info.count("error." + name)) << name;
     double stated = 0;
     ASSERT_TRUE(parse_number(table.info.at("error." + name), stated)) << name;
-    EXPECT_NEAR(value, stated, 1e-9 * std::abs(stated)) << name;
+    EXPECT_NEAR(value, stated, 2e-6 + 1e-9 * std::abs(stated)) << name;
   }
   EXPECT_EQ(table.info.at("error.truth"), report.truth);
   EXPECT_TRUE(within_tolerance(report, s)) << report.error.median << ' ' << report.error.p99;

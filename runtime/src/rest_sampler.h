@@ -4,11 +4,12 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "alias_table.h"
 #include "color4.h"
+#include "sunbeam/core/rng.h"
 
 namespace sunbeam {
 
@@ -18,12 +19,19 @@ class RestSampler {
   static constexpr int kBins = 64;
 
   // The viewer of a row; at grazing a little above.
-  static double cosine_of_row(int row);
+  static double cosine_of_row(int row) {
+    constexpr double kSmallestCosine = 1e-4;
+    const double root = static_cast<double>(row) / (kRows - 1);
+    return std::max(root * root, kSmallestCosine);
+  }
   static double middle_of_bin(int bin) { return (bin + 0.5) / kBins; }
 
   // In order of rows. `density` of each bin over the root, in any unit, >= 0; `first_chance` of the first
   // surface.
-  void add_row(std::span<const double> density, double first_chance);
+  void add_row(std::span<const double> density, double first_chance) {
+    chance_[rows_.size()] = static_cast<float>(first_chance);
+    rows_.emplace_back(density);
+  }
 
   // Where a viewer lies among the rows.
   EvenPosition viewer(float root) const { return EvenPosition(root, kRows); }
@@ -31,25 +39,24 @@ class RestSampler {
     return chance_[viewer.lower] + viewer.upper_weight * (chance_[viewer.lower + 1] - chance_[viewer.lower]);
   }
 
-  // Root of cos(theta_i); u in [0, 1).
-  double sample(const EvenPosition& viewer, double u) const;
+  // Root of cos(theta_i), > 0.
+  double sample(const EvenPosition& viewer, Rng& rng) const {
+    const bool upper = rng.uniform() < viewer.upper_weight;
+    const std::size_t bin = rows_[static_cast<std::size_t>(viewer.lower + (upper ? 1 : 0))].draw(rng.next());
+    return (static_cast<double>(bin) + 1 - rng.uniform()) / kBins;
+  }
   // Of a direction whose root that is, 1/sr; `per_root` = 1 / root.
   float pdf(const EvenPosition& viewer, float root, float per_root) const {
     const int bin = std::min(static_cast<int>(root * kBins), kBins - 1);
-    const Row* row = rows_.data() + viewer.lower;
-    const float low = row[0].density[static_cast<std::size_t>(bin)],
-                high = row[1].density[static_cast<std::size_t>(bin)];
+    const auto* row = rows_.data() + viewer.lower;
+    const float low = row[0].density(static_cast<std::size_t>(bin)),
+                high = row[1].density(static_cast<std::size_t>(bin));
     constexpr float kPerSolidAngle = static_cast<float>(kInvPi / 4);  // d(root) / d(cosine) / (2 pi)
     return (low + viewer.upper_weight * (high - low)) * kPerSolidAngle * per_root;
   }
 
  private:
-  struct Row {
-    std::array<float, kBins + 1> cdf;
-    std::array<float, kBins> density;       // over the root, its mean 1
-    std::array<std::uint8_t, kBins> guide;  // the bin where cdf passes k / kBins
-  };
-  std::vector<Row> rows_;
+  std::vector<AliasTable<kBins>> rows_;
   std::array<float, kRows> chance_{};
 };
 

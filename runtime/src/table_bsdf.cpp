@@ -4,6 +4,7 @@
 
 #include "bound_rest.h"
 #include "dense_rest.h"
+#include "first_sampler.h"
 #include "rest_sampler.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/text.h"
@@ -59,7 +60,8 @@ struct FloatGgx {
         v2(static_cast<float>(square(roughness.v))),
         uv3_per_pi(
             static_cast<float>(square(roughness.u * roughness.v) * roughness.u * roughness.v * kInvPi)),
-        least_alpha2(std::min(u2, v2)) {}
+        least_alpha2(std::min(u2, v2)),
+        alpha(static_cast<float>(roughness.u)) {}
 
   float root_squared(const Vec3& w) const {
     const auto x = static_cast<float>(w.x), y = static_cast<float>(w.y), z = static_cast<float>(w.z);
@@ -70,7 +72,7 @@ struct FloatGgx {
     return u2 * v2 * z * z + v2 * x * x + u2 * y * y;
   }
 
-  float u2, v2, uv3_per_pi, least_alpha2;
+  float u2, v2, uv3_per_pi, least_alpha2, alpha;
 };
 
 struct BoundTable {
@@ -81,6 +83,14 @@ struct BoundTable {
     float pdf;
   };
   Parts parts(const Vec3& wo, const Vec3& wi) const;
+  float cell_density(const EvenPosition& viewer, const Vec3& wo, const Vec3& h, float r, float per_q,
+                     float per_height) const;
+  double add_first_row(const Vec3& wo);
+  Point2 draw_normal(const EvenPosition& viewer, Rng& rng) const {
+    return symmetry == Symmetry::isotropic ? first_sampler.sample(viewer, rng)
+                                           : Point2{rng.uniform(), rng.uniform()};
+  }
+
   Rgb rest(const Vec3& wo, const Vec3& wi) const;
   Color4 rest_at(const Vec3& wo, const Vec3& wi, const BoundRest::Cosine& o,
                  const BoundRest::Cosine& i) const;
@@ -90,8 +100,6 @@ struct BoundTable {
   }
   Rgb first_albedo(const Vec3& wo, int nodes) const;
   Rgb rest_albedo(const Vec3& wo) const;
-  template <class Mean>
-  void add_rest_density(const Mean& mean_rest, std::vector<double>& density) const;
   void prepare_sampling();
   void visit_azimuth_mean(const Vec3& wo,
                           const std::function<void(const std::function<Rgb(double)>&)>& visit) const;
@@ -105,6 +113,7 @@ struct BoundTable {
   std::variant<std::monostate, DenseRest, BoundRest> rest_;
   std::vector<Color4> film;
   RestSampler sampler;
+  FirstSampler first_sampler;  // an isotropic rough film's
 };
 
 BoundTable::BoundTable(const Table& table, const Material& at)
@@ -139,14 +148,28 @@ Rgb BoundTable::rest(const Vec3& wo, const Vec3& wi) const {
   return std::get<DenseRest>(rest_)(wo, wi);
 }
 
-Color4 BoundTable::rest_at(const Vec3& wo, const Vec3& wi, const BoundRest::Cosine& o,
-                           const BoundRest::Cosine& i) const {
-  if (const auto* factored = std::get_if<BoundRest>(&rest_)) return (*factored)(wo, wi, o, i);
-  return to_color4(std::get<DenseRest>(rest_)(wo, wi));
+inline Color4 BoundTable::rest_at(const Vec3& wo, const Vec3& wi, const BoundRest::Cosine& o,
+                                  const BoundRest::Cosine& i) const {
+  if (const auto* factored = std::get_if<BoundRest>(&rest_)) [[likely]]
+    return (*factored)(wo, wi, o, i);
+  return to_color4(rest(wo, wi));
 }
 
 Rgb BoundTable::film_reflectance(double cosine) const {
   return to_rgb(film_at(static_cast<float>(std::max(cosine, 0.0))));
+}
+
+// Density over FirstSampler's square of drawing the normal along h. In the space stretched to roughness 1
+// normals mirror w' = (a w.x, a w.y, w.z) / r to the cap; here all lengths are times r.
+inline float BoundTable::cell_density(const EvenPosition& viewer, const Vec3& wo, const Vec3& h, float r,
+                                      float per_q, float per_height) const {
+  const float a = ggx.alpha;
+  const auto ox = static_cast<float>(wo.x), oy = static_cast<float>(wo.y), oz = static_cast<float>(wo.z);
+  const auto hx = static_cast<float>(h.x), hy = static_cast<float>(h.y), hz = a * static_cast<float>(h.z);
+  const float twice = 2 * (a * (ox * hx + oy * hy) + oz * hz) * ggx.u2 * per_q;
+  const float x = twice * hx - a * ox, y = twice * hy - a * oy, z = twice * hz - oz;
+  return first_sampler.density(viewer, x * ox + y * oy, (x * x + y * y) * (ox * ox + oy * oy),
+                               (r - z) * per_height);
 }
 
 // The lobe of ggx.h and its bounded density, with h = wo + wi not normalised and all roots and divisions four
@@ -173,7 +196,11 @@ BoundTable::Parts BoundTable::parts(const Vec3& wo, const Vec3& wi) const {
   const float rest_pdf = (1 - chance) * sampler.pdf(viewer, i.root, per[0]);
   if (smooth) return {Color4{}, rest, rest_pdf};
   const float d = ggx.uv3_per_pi * l2 * l2 * per[1];
-  return {(d * per[2]) * film_at(0.5f * more[0]), rest, rest_pdf + chance * d * bound * per[3]};
+  const Color4 first = (d * per[2]) * film_at(0.5f * more[0]);
+  float first_pdf = d * bound * per[3];
+  if (symmetry == Symmetry::isotropic)
+    first_pdf *= cell_density(viewer, wo, h, roots[2], q * per[1], 2 * bound * per[3]);
+  return {first, rest, rest_pdf + chance * first_pdf};
 }
 
 // Int f_first cos dwi by midpoints in the unit square of visible normals, which turns it into a mean of R
@@ -216,6 +243,33 @@ Rgb BoundTable::rest_albedo(const Vec3& wo) const {
   return total;
 }
 
+// Adds the viewer's row and returns the albedo, both by midpoints in the cells: there f_first cos / density
+// is R G2 / G1 times the bounded cap's share of the whole.
+double BoundTable::add_first_row(const Vec3& wo) {
+  constexpr int kTurnNodes = 1, kHeightNodes = 2;
+  constexpr double kLeastShare =
+      0.02;  // of the mean: neighbouring viewers may have light where this has none
+  std::vector<double> power(FirstSampler::kCells);
+  double albedo = 0;
+  for (std::size_t cell = 0; cell < power.size(); ++cell)
+    for (int k = 0; k < kTurnNodes * kHeightNodes; ++k) {
+      const double turn =
+          static_cast<double>(cell / FirstSampler::kHeights) + (k % kTurnNodes + 0.5) / kTurnNodes;
+      const double height =
+          static_cast<double>(cell % FirstSampler::kHeights) + (k / kTurnNodes + 0.5) / kHeightNodes;
+      const Vec3 wi =
+          normals.sample_mirrored(wo, {turn / (2 * FirstSampler::kTurns), height / FirstSampler::kHeights});
+      if (wi.z <= 0) continue;
+      const Vec3 h = normalize(wo + wi);
+      const double weight = normals.reflection(wo, wi, h) * wi.z / normals.reflection_pdf_bounded(wo, h);
+      power[cell] += std::max(0.0, mean(film_reflectance(dot(wo, h)))) * weight / (kTurnNodes * kHeightNodes);
+    }
+  for (const double p : power) albedo += p / FirstSampler::kCells;
+  for (double& p : power) p = std::max(p, kLeastShare * albedo);
+  first_sampler.add_row(power);
+  return albedo;
+}
+
 // Densities follow the mean over channels, and over the viewer's azimuth.
 void BoundTable::prepare_sampling() {
   const int azimuths = symmetry == Symmetry::anisotropic ? kViewerAzimuths : 1;
@@ -225,7 +279,8 @@ void BoundTable::prepare_sampling() {
     for (int a = 0; a < azimuths; ++a) {
       const double phi = azimuths == 1 ? 0 : kPi / 2 * (a + 0.5) / azimuths;
       const Vec3 wo = direction_from_cosine(RestSampler::cosine_of_row(row), phi);
-      of_first += std::max(0.0, mean(first_albedo(wo, kSamplingNormalNodes)));
+      of_first += smooth || azimuths > 1 ? std::max(0.0, mean(first_albedo(wo, kSamplingNormalNodes)))
+                                         : add_first_row(wo);
       visit_azimuth_mean(wo, [&](const auto& mean_rest) {
         for (int bin = 0; bin < RestSampler::kBins; ++bin) {
           const double root = RestSampler::middle_of_bin(bin), cos_i = root * root;
@@ -286,10 +341,12 @@ std::optional<BsdfSample> TableBsdf::sample(const Vec3& wo, Rng& rng) const {
   Vec3 wi;
   if (rng.uniform() < chance) {
     if (b.smooth) return BsdfSample{{-wo.x, -wo.y, wo.z}, b.film_reflectance(wo.z) / chance, true};
-    wi = reflect(wo, b.normals.sample_visible_bounded(wo, {rng.uniform(), rng.uniform()}));
+    wi = b.normals.sample_mirrored(wo, b.draw_normal(viewer, rng));
   } else {
-    const double root = b.sampler.sample(viewer, rng.uniform());
-    wi = direction_from_cosine(root * root, 2 * kPi * rng.uniform());
+    const double root = b.sampler.sample(viewer, rng);
+    const double cosine = root * root, sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    const Turn phi(rng.uniform());
+    wi = {sine * phi.cosine, sine * phi.sine, cosine};
   }
   if (wi.z <= 0) return {};
   const EvalPdf at = eval_pdf(wo, wi);

@@ -56,17 +56,17 @@ class Ggx {
     return normalize({u_ * cap.x, v_ * cap.y, std::max(1e-12, cap.z)});
   }
 
-  // A normal that mirrors `w`, with density reflection_pdf_bounded() over the mirrored direction: visible
-  // normals of isotropic roughness, but fewer of those that send it below the horizon (Eto and Tokuyoshi
-  // 2023).
-  Vec3 sample_visible_bounded(const Vec3& w, const Point2& u) const {
-    const Vec3 stretched = normalize({u_ * w.x, v_ * w.y, w.z});
-    const double bottom = bound(w) * stretched.z;
-    const double phi = 2 * kPi * u.x;
-    const double z = (1 - u.y) * (1 + bottom) - bottom;
-    const double sin_theta = std::sqrt(std::max(0.0, 1 - z * z));
-    const Vec3 cap = Vec3{sin_theta * std::cos(phi), sin_theta * std::sin(phi), z} + stretched;
-    return normalize({u_ * cap.x, v_ * cap.y, std::max(1e-12, cap.z)});
+  // `w` mirrored at a visible normal, with density reflection_pdf_bounded(): fewer than by sample_visible()
+  // go below the horizon (Eto and Tokuyoshi 2023). u.x turns from the azimuth of w.
+  Vec3 sample_mirrored(const Vec3& w, const Point2& u) const {
+    const double sine2 = w.x * w.x + w.y * w.y, r = root(w), bottom = bound(w) * w.z;
+    const double z = (1 - u.y) * (r + bottom) - bottom;  // lengths in the stretched space are times r
+    const Turn phi(u.x);
+    const double ring = std::sqrt(std::max(0.0, r * r - z * z) / (sine2 > 0 ? sine2 : 1));
+    const double x = sine2 > 0 ? w.x : 1, y = w.y;
+    const Vec3 h{u_ * (ring * (phi.cosine * x - phi.sine * y) + u_ * w.x),
+                 v_ * (ring * (phi.sine * x + phi.cosine * y) + v_ * w.y), std::max(1e-12, z + w.z)};
+    return (2 * dot(w, h) / dot(h, h)) * h - w;
   }
   // 1/sr.
   double reflection_pdf_bounded(const Vec3& wo, const Vec3& h) const {

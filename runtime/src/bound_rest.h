@@ -14,6 +14,8 @@ namespace sunbeam {
 
 class BoundRest {
  public:
+  static constexpr int kRatioCosines = 65;  // of an isotropic table
+
   BoundRest(const FactoredRest& rest, Symmetry symmetry);
 
   // A direction's cosine and its root, > 0.
@@ -23,9 +25,25 @@ class BoundRest {
     float cosine, root;
   };
 
+  bool is_isotropic() const { return fine_.phis == 1; }
+
+  // The rest of an isotropic table for one viewer: what its cosine decides is done.
+  class OfViewer {
+   public:
+    OfViewer(const BoundRest& rest, const Cosine& o);
+    Color4 operator()(const Cosine& i) const {
+      return sunbeam::lerp(rest_.scale_.data(), EvenPosition(i.cosine, rest_.fine_.cosines)) *
+             sunbeam::lerp(ratio_.data(), EvenPosition(i.root, rest_.coarse_.cosines));
+    }
+
+   private:
+    const BoundRest& rest_;
+    std::array<Color4, kRatioCosines> ratio_;  // with the viewer's scale
+  };
+
   // 1/sr, for wo.z > 0 and wi.z > 0, whose cosines o and i are.
   Color4 operator()(const Vec3& wo, const Vec3& wi, const Cosine& o, const Cosine& i) const {
-    return fine_.phis == 1 ? isotropic(o, i) : anisotropic(wo, wi, o, i);
+    return is_isotropic() ? isotropic(o, i) : anisotropic(wo, wi, o, i);
   }
   Color4 operator()(const Vec3& wo, const Vec3& wi) const {
     return (*this)(wo, wi, Cosine(static_cast<float>(wo.z)), Cosine(static_cast<float>(wi.z)));

@@ -90,6 +90,7 @@ struct BoundTable {
     return has_cells() ? first_sampler.sample(viewer, rng) : Point2{rng.uniform(), rng.uniform()};
   }
 
+  void eval_span(const BoundRest& factored, const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f) const;
   bool has_cells() const { return ggx.u2 == ggx.v2; }
   Rgb rest(const Vec3& wo, const Vec3& wi) const;
   Color4 rest_at(const Vec3& wo, const Vec3& wi, const BoundRest::Cosine& o,
@@ -294,6 +295,29 @@ void BoundTable::prepare_sampling() {
   }
 }
 
+// parts() without what pdf needs, and with what the viewer decides done once.
+void BoundTable::eval_span(const BoundRest& factored, const Vec3& wo, std::span<const Vec3> wi,
+                           std::span<Rgb> f) const {
+  const BoundRest::OfViewer rest_of(factored, BoundRest::Cosine(static_cast<float>(wo.z)));
+  const auto c_o = static_cast<float>(wo.z);
+  const float r_o = std::sqrt(ggx.root_squared(wo));
+  for (std::size_t k = 0; k < wi.size(); ++k) {
+    f[k] = {};
+    if (wi[k].z <= 0) continue;
+    const auto c_i = static_cast<float>(wi[k].z);
+    const Vec3 h = wo + wi[k];
+    const auto l2 = static_cast<float>(dot(h, h));
+    const Color4 roots = sqrt4(Color4{c_i, ggx.root_squared(wi[k]), l2, 1});
+    Color4 value = rest_of(BoundRest::Cosine(c_i, roots[0]));
+    if (!smooth) {
+      const float q = ggx.form(h);
+      const float lobe = ggx.uv3_per_pi * l2 * l2 / (q * q * 2 * (r_o * c_i + roots[1] * c_o));
+      value += lobe * film_at(0.5f * roots[2]);
+    }
+    f[k] = to_rgb(value);
+  }
+}
+
 TableBsdf::TableBsdf(const Table& table, const Parameters& parameters, OutsideGrid outside)
     : bound_(std::make_shared<BoundTable>(table,
                                           checked(table, parameters, outside).applied_to(table.material))) {}
@@ -304,6 +328,12 @@ Rgb TableBsdf::film_reflectance(double cosine) const { return bound_->film_refle
 
 Rgb TableBsdf::dirac(const Vec3& wo) const {
   return bound_->smooth && wo.z > 0 ? bound_->film_reflectance(wo.z) : Rgb();
+}
+
+void TableBsdf::eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f) const {
+  const auto* factored = std::get_if<BoundRest>(&bound_->rest_);
+  if (wo.z > 0 && factored && factored->is_isotropic()) return bound_->eval_span(*factored, wo, wi, f);
+  for (std::size_t k = 0; k < wi.size(); ++k) f[k] = eval_pdf(wo, wi[k]).f;
 }
 
 Rgb TableBsdf::first(const Vec3& wo, const Vec3& wi) const {

@@ -41,6 +41,9 @@ class TableBsdf final : public Bsdf {
   // Both at once, at the price of one.
   EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi) const;
 
+  // f of one viewer and many lights at a lower price each; f[k] belongs to wi[k], and there are as many.
+  void eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f) const;
+
   Rgb first(const Vec3& wo, const Vec3& wi) const;
   Rgb rest(const Vec3& wo, const Vec3& wi) const;
   Rgb rest_stderr(const Vec3& wo, const Vec3& wi) const;

@@ -8,7 +8,6 @@
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/file.h"
 #include "sunbeam/core/hash.h"
-#include "sunbeam/table.h"
 
 namespace sunbeam {
 namespace {
@@ -211,6 +210,10 @@ Recipe parse_recipe(const std::string& text, const std::string& name,
     table.fail("encoding",
                fmt::format("found \"factored\", but the material has {}; allowed: \"auto\", \"dense\"",
                            recipe.material.scatters() ? "scattering_per_nm > 0" : "microfacet \"multiple\""));
+
+  recipe.table.frame = static_cast<FrameKind>(table.choice("frame", {"closed", "none"}, 0));
+  if (recipe.table.frame == FrameKind::none && recipe.table.encoding != Encoding::dense)
+    table.fail("frame", "found \"none\"; allowed with encoding \"dense\" only");
 
   const ConfigTable accuracy = config.table("accuracy");
   recipe.accuracy.noise = accuracy.number("noise", {1e-4, 1}, recipe.accuracy.noise);

@@ -40,7 +40,7 @@ Table make_table(Symmetry symmetry, const Roughness& roughness, const Remainder&
       isotropic ? test::axis("phi_o", spaced_nodes(0, kPi, kAzimuths / 2 + 1))
                 : test::full_circle("phi_o", kAzimuths)};
   table.remainder = NdArray("remainder", axes, Precision::single_float);
-  table.rest_stderr = NdArray("rest_stderr", axes, Precision::single_float);
+  table.rest_stderr = NdArray("rest_stderr", axes, Precision::single_float, 1);
   std::size_t cell = 0;
   for (const double cos_i : cosines)
     for (const double phi_i : axes[4].nodes)

@@ -66,7 +66,7 @@ Table make_table(Precision precision) {
                             test::axis("cos_theta_o", cosines),
                             test::full_circle("phi_o", kAzimuthsO)};
   table.remainder = NdArray("remainder", axes, precision);
-  table.rest_stderr = NdArray("rest_stderr", axes, precision);
+  table.rest_stderr = NdArray("rest_stderr", axes, precision, 1);
   std::size_t cell = 0;
   for (const double cos_i : cosines)
     for (const double phi_i : axes[4].nodes)

@@ -41,7 +41,7 @@ struct Defect {
 
 // The array anew, with other axes or another name; content does not matter.
 NdArray rebuilt(const NdArray& array, std::vector<Axis> axes, const std::string& name = "") {
-  NdArray result(name.empty() ? array.name() : name, std::move(axes), array.precision());
+  NdArray result(name.empty() ? array.name() : name, std::move(axes), array.precision(), array.channels());
   test::fill_randomly(result, 0, 1, 9);
   return result;
 }

@@ -5,10 +5,7 @@
 namespace sunbeam {
 
 BoundAxis::BoundAxis(const Axis& axis, std::size_t stride)
-    : power_(static_cast<float>(axis.power)),
-      period_(static_cast<float>(axis.period)),
-      origin_(static_cast<float>(axis.origin)),
-      first_(static_cast<float>(axis.nodes.front())) {
+    : power_(axis.power), period_(axis.period), origin_(axis.origin), first_(axis.nodes.front()) {
   const std::size_t n = axis.size();
   const bool wraps = axis.period > 0 && n > 1;
   const std::size_t most = axis.is_cubic ? 4 : 2;
@@ -17,17 +14,17 @@ BoundAxis::BoundAxis(const Axis& axis, std::size_t stride)
   const auto coordinate = [&](std::size_t node) {
     return axis.coordinate(axis.nodes[node % n] + (node < n ? 0 : axis.period));
   };
-  low_ = static_cast<float>(coordinate(0));
-  high_ = static_cast<float>(coordinate(wraps ? n : n - 1));
+  low_ = coordinate(0);
+  high_ = coordinate(wraps ? n : n - 1);
 
   intervals_.assign(n == 1 ? 1 : wraps ? n : n - 1, {});
   for (std::size_t k = 0; k < intervals_.size(); ++k) {
     Interval& interval = intervals_[k];
-    interval.begin = static_cast<float>(coordinate(k));
+    interval.begin = coordinate(k);
     const std::size_t first = count > 2 ? std::min(k > 0 ? k - 1 : 0, n - count) : k;
     for (std::size_t i = 0; i < count; ++i) {
       interval.offset[i] = static_cast<int>((first + i) % n * stride);
-      interval.u[i] = static_cast<float>(coordinate(first + i));
+      interval.u[i] = static_cast<float>(coordinate(first + i) - interval.begin);
       double factor = 1;
       for (std::size_t j = 0; j < count; ++j)
         if (j != i) factor /= coordinate(first + i) - coordinate(first + j);
@@ -37,9 +34,9 @@ BoundAxis::BoundAxis(const Axis& axis, std::size_t stride)
   if (n == 1) return;
   cells_per_unit_ = kGuideCells / (high_ - low_);
   for (int cell = 0; cell <= kGuideCells; ++cell) {
-    const float begin = low_ + static_cast<float>(cell) / cells_per_unit_;
+    const double begin = low_ + cell / cells_per_unit_;
     const auto beyond = std::upper_bound(intervals_.begin() + 1, intervals_.end(), begin,
-                                         [](float u, const Interval& i) { return u < i.begin; });
+                                         [](double u, const Interval& i) { return u < i.begin; });
     // One too early does no harm: rounding must not make it one too late.
     const auto interval = beyond - intervals_.begin() - 1;
     guide_[cell] = static_cast<std::uint16_t>(std::max<std::ptrdiff_t>(0, interval - 1));

@@ -51,8 +51,7 @@ AngleCoordinates DenseRest::coordinates(const Vec3& wo, const Vec3& wi) const {
 }
 
 Rgb DenseRest::remainder(const AngleCoordinates& at) const {
-  const auto i = bound_axes_[0].at(static_cast<float>(at.cos_i)),
-             o = bound_axes_[2].at(static_cast<float>(at.cos_o));
+  const auto i = bound_axes_[0].at(at.cos_i), o = bound_axes_[2].at(at.cos_o);
   Color4 sum{};
   if (!has_azimuth_) {
     for (int a = 0; a < i.count; ++a) {
@@ -63,8 +62,7 @@ Rgb DenseRest::remainder(const AngleCoordinates& at) const {
     }
     return to_rgb(sum);
   }
-  const auto phi_i = bound_axes_[1].at(static_cast<float>(at.phi_i)),
-             phi_o = bound_axes_[3].at(static_cast<float>(at.phi_o));
+  const auto phi_i = bound_axes_[1].at(at.phi_i), phi_o = bound_axes_[3].at(at.phi_o);
   for (int a = 0; a < i.count; ++a)
     for (int b = 0; b < phi_i.count; ++b) {
       const Color4* block = remainder_.data() + i.offset[a] + phi_i.offset[b];

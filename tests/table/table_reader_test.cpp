@@ -330,7 +330,7 @@ TEST(TableWriter, ValuesThatAreNotFiniteAreRefused) {
       {"remainder", [](Table& t) { t.remainder.set(0, Rgb(1e6)); }},  // beyond a half
       {"rest_stderr",
        [](Table& t) {
-         t.rest_stderr.set(287, {0, 0, kInf});
+         t.rest_stderr.set(287, Rgb(kInf));
        }},
       {"film_reflectance", [](Table& t) { t.film_reflectance.set(0, Rgb(kNan)); }}};
   for (const Form& form : forms())

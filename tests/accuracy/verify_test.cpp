@@ -60,7 +60,7 @@ TEST(Verify, GoodTableIsWithinTolerance) {
     EXPECT_TRUE(within_tolerance(report, s))
         << roughness << ": " << report.error.median << ' ' << report.error.p99;
     EXPECT_LE(report.energy_max, 1);
-    EXPECT_LT(report.reciprocity_max, 1e-9);
+    EXPECT_LT(report.reciprocity_max, 1e-6);  // look-ups in single floats
     EXPECT_EQ(report.truth, "pfmc-unidirectional");
     EXPECT_EQ(report.points.size(), 40u);
   }

@@ -206,7 +206,7 @@ class Sweep {
     bake_film(recipe, table_);
     const auto axes = rest_axes(recipe);
     table_.remainder = NdArray("remainder", axes, recipe.table.precision);
-    table_.rest_stderr = NdArray("rest_stderr", axes, Precision::half_float, 1);
+    table_.rest_stderr = NdArray("rest_stderr", axes, Precision::single_float, 1);
     for (const double c : axes[3].nodes)
       for (const double phi : axes[4].nodes) wi_.push_back(direction_from_cosine(c, phi));
     for (const double c : axes[5].nodes)
@@ -300,7 +300,7 @@ double bytes_of(const Recipe& recipe, Encoding encoding) {
   }
   const double value = recipe.table.precision == Precision::half_float ? 2 : 4;
   const double films = recipe.material.is_smooth() || recipe.table.frame == FrameKind::none ? 1 : 2;
-  return (3 * value + 2) * cells_of(rest_axes(recipe)) + films * 3 * 4 * cells_of(film_axes(recipe));
+  return (3 * value + 4) * cells_of(rest_axes(recipe)) + films * 3 * 4 * cells_of(film_axes(recipe));
 }
 
 }  // namespace

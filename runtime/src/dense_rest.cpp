@@ -3,7 +3,7 @@
 namespace sunbeam {
 namespace {
 
-constexpr std::size_t kCurveNodes = 129;
+constexpr std::size_t kCurveNodes = 1025;  // linear between: towards grazing T is curved
 
 // Shares of the nodes in the mean over the axis: two Gauss points an interval are exact for cubics.
 std::vector<double> mean_weights(const Axis& axis) {
@@ -35,9 +35,13 @@ DenseRest::DenseRest(const Table& table, const Material& material)
   has_azimuth_ = axes_[1].size() > 1 || axes_[3].size() > 1;
   if (table.frame == FrameKind::none) return;
   frame_.emplace(material, table.first_visit);
-  for (std::size_t i = 0; i < kCurveNodes; ++i)
-    transmittance_.push_back(
-        table.transmittance({point[0], point[1], static_cast<double>(i) / (kCurveNodes - 1)}));
+  const bool reflects = table.film_transmittance.empty();
+  const NdArray film =
+      (reflects ? table.film_reflectance : table.film_transmittance).slice(std::span(point).first(2));
+  for (std::size_t i = 0; i < kCurveNodes; ++i) {
+    const Rgb value = film.interpolate(std::array{static_cast<double>(i) / (kCurveNodes - 1)});
+    transmittance_.push_back(reflects ? Rgb(1) - value : value);
+  }
 }
 
 Rgb DenseRest::transmittance(double cosine) const {

@@ -6,8 +6,7 @@
 namespace sunbeam {
 namespace {
 
-constexpr double kPhaseStep = 0.15;  // rad of film phase between thickness nodes: linear to 0.3 % of a fringe
-constexpr std::size_t kIorRefinement = 3;  // nodes per interval of the recipe's grid
+constexpr double kPhaseStep = 0.5;  // rad of film phase between thickness nodes: cubic to 0.15 % of a fringe
 constexpr std::size_t kCosines = 65;
 constexpr double kSmallestCosine = 1e-8;  // the node at 0 holds the limit from above: 0 without interfaces
 // Nodes of F over the optical path, even in its cube root: linear to 1e-5 of a white base for |a| up to 4.
@@ -18,6 +17,7 @@ constexpr int kQuadrantAzimuths = 4;      // midpoints, of an anisotropic film
 
 Axis film_thickness_axis(const Recipe& recipe) {
   Axis axis = recipe.grid[0];
+  axis.is_cubic = true;
   const double span = axis.high() - axis.low();
   const auto nm = recipe.spectrum.wavelengths(recipe.material).nm;
   const double phase = 4 * kPi * recipe.material.film_ior * span / *std::min_element(nm.begin(), nm.end());
@@ -28,14 +28,8 @@ Axis film_thickness_axis(const Recipe& recipe) {
 }
 
 Axis film_ior_axis(const Recipe& recipe) {
-  const Axis& coarse = recipe.grid[1];
-  Axis axis = coarse;
-  axis.nodes = {coarse.nodes.front()};
-  for (std::size_t i = 1; i < coarse.size(); ++i) {
-    const auto fine =
-        spaced_nodes(coarse.nodes[i - 1], coarse.nodes[i], kIorRefinement + 1, coarse.power, coarse.origin);
-    axis.nodes.insert(axis.nodes.end(), fine.begin() + 1, fine.end());
-  }
+  Axis axis = recipe.grid[1];
+  axis.is_cubic = true;
   return axis;
 }
 
@@ -67,11 +61,10 @@ std::vector<double> crossing_weights(const Material& material, const Axis& cosin
         const Vec3 h = ggx.sample_visible(w, {u, v});
         const auto crossing = film.cross(w, {h, {Rgb(0), Rgb(1)}, 0});
         if (!crossing) continue;
-        const Bracket at = cosines.locate(dot(w, h));
+        const Stencil at = cosines.stencil(dot(w, h));
         const double share =
             crossing->weight.r / static_cast<double>(kNormalNodes * kNormalNodes * directions.size());
-        weights[i * n + at.lower] += share * (1 - at.upper_weight);
-        weights[i * n + at.upper] += share * at.upper_weight;
+        for (std::size_t j = 0; j < at.count; ++j) weights[i * n + at.node[j]] += share * at.weight[j];
       }
   }
   return weights;
@@ -101,24 +94,25 @@ NdArray first_visit(const Recipe& recipe) {
 }  // namespace
 
 std::vector<Axis> film_axes(const Recipe& recipe) {
-  return {
-      film_thickness_axis(recipe), film_ior_axis(recipe), {"cos_theta", "1", spaced_nodes(0, 1, kCosines)}};
+  return {film_thickness_axis(recipe),
+          film_ior_axis(recipe),
+          {"cos_theta", "1", spaced_nodes(0, 1, kCosines), 1, 0, 0, true}};
 }
 
 void bake_film(const Recipe& recipe, Table& table) {
   const auto axes = film_axes(recipe);
   const Axis &thickness = axes[0], &ior = axes[1], &cosine = axes[2];
-  if (recipe.spectrum.is_full()) table.first_visit = first_visit(recipe);
+  const bool has_frame = table.frame == FrameKind::closed, passes = has_frame && !recipe.material.is_smooth();
+  if (recipe.spectrum.is_full() && has_frame) table.first_visit = first_visit(recipe);
   table.film_reflectance = NdArray("film_reflectance", axes, Precision::single_float);
-  if (!recipe.material.is_smooth())
-    table.film_transmittance = NdArray("film_transmittance", axes, Precision::single_float);
+  if (passes) table.film_transmittance = NdArray("film_transmittance", axes, Precision::single_float);
 
   const Wavelengths wavelengths = recipe.spectrum.wavelengths(recipe.material);
   const WavelengthQuadrature spectrum{wavelengths.nm, wavelengths.weight};
   for (std::size_t b = 0; b < ior.size(); ++b) {
     Material material = recipe.material;
     material.base_ior = ior.nodes[b];
-    const auto weights = material.is_smooth() ? std::vector<double>() : crossing_weights(material, cosine);
+    const auto weights = passes ? crossing_weights(material, cosine) : std::vector<double>();
     for (std::size_t a = 0; a < thickness.size(); ++a) {
       material.film_thickness_nm = thickness.nodes[a];
       const ThinFilm film = ThinFilm::of(material);
@@ -126,7 +120,7 @@ void bake_film(const Recipe& recipe, Table& table) {
       for (std::size_t c = 0; c < kCosines; ++c)
         table.film_reflectance.set(
             row + c, spectrum.fold_film(film, std::max(cosine.nodes[c], kSmallestCosine)).reflectance);
-      if (material.is_smooth()) continue;
+      if (!passes) continue;
       for (std::size_t c = 0; c < kCosines; ++c)
         table.film_transmittance.set(
             row + c,

@@ -8,7 +8,6 @@
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/file.h"
 #include "sunbeam/core/hash.h"
-#include "sunbeam/table.h"
 
 namespace sunbeam {
 namespace {
@@ -59,11 +58,12 @@ Material read_material(const ConfigTable& config) {
 }
 
 // The axes without nodes. Their coordinates follow how the rest depends on a parameter: like the square root
-// of the base IOR's distance from index match, and ever more slowly with absorption.
+// of the base IOR's distance from index match, and ever more slowly with absorption; evenly with that of a
+// scattering pigment, whose remainder holds the decay itself.
 std::array<Axis, 3> bare_axes(const Material& material) {
   Axis thickness{kParameterNames[0], "nm", {}};
   Axis base_ior{kParameterNames[1], "1", {}, 2, 0, material.exterior_ior};
-  Axis absorption{kParameterNames[2], "1/nm", {}, 3};
+  Axis absorption{kParameterNames[2], "1/nm", {}, material.scatters() ? 1.0 : 3.0};
   return {thickness, base_ior, absorption};
 }
 
@@ -211,6 +211,10 @@ Recipe parse_recipe(const std::string& text, const std::string& name,
     table.fail("encoding",
                fmt::format("found \"factored\", but the material has {}; allowed: \"auto\", \"dense\"",
                            recipe.material.scatters() ? "scattering_per_nm > 0" : "microfacet \"multiple\""));
+
+  recipe.table.frame = static_cast<FrameKind>(table.choice("frame", {"closed", "none"}, 0));
+  if (recipe.table.frame == FrameKind::none && recipe.table.encoding != Encoding::dense)
+    table.fail("frame", "found \"none\"; allowed with encoding \"dense\" only");
 
   const ConfigTable accuracy = config.table("accuracy");
   recipe.accuracy.noise = accuracy.number("noise", {1e-4, 1}, recipe.accuracy.noise);

@@ -10,6 +10,7 @@
 #include "sunbeam/axis.h"
 #include "sunbeam/material.h"
 #include "sunbeam/nd_array.h"
+#include "sunbeam/table.h"
 
 namespace sunbeam {
 
@@ -34,6 +35,7 @@ struct Recipe {
     int azimuths = 1;
     Precision precision = Precision::half_float;
     Encoding encoding = Encoding::automatic;
+    FrameKind frame = FrameKind::closed;  // dense only
   } table;
 
   struct {

@@ -34,20 +34,33 @@ std::vector<double> nodes_round(std::size_t count) {
   return nodes;
 }
 
+// Cubic in all but the azimuths of an anisotropic film, of which one is periodic and the other must not
+// differ from it. Cosines are denser towards grazing, where the rest bends.
 std::vector<Axis> rest_axes(const Recipe& recipe) {
   std::vector<Axis> axes = recipe.grid;
-  const auto cosines = spaced_nodes(kLowestCosine, 1, static_cast<std::size_t>(recipe.table.angles));
+  for (Axis& axis : axes) axis.is_cubic = true;
+  Axis cosine{"", "1", {}, 2, 0, 0, true};
+  cosine.nodes = spaced_nodes(kLowestCosine, 1, static_cast<std::size_t>(recipe.table.angles), cosine.power);
   const auto azimuths = static_cast<std::size_t>(recipe.table.azimuths);
-  Axis phi_i{"phi_i", "rad", {0}}, phi_o{"phi_o", "rad", spaced_nodes(0, kPi, azimuths)};
+  Axis phi_i{"phi_i", "rad", {0}}, phi_o{"phi_o", "rad", spaced_nodes(0, kPi, azimuths), 1, 0, 0, true};
   if (symmetry_of(recipe) == Symmetry::anisotropic) {
     phi_i.nodes = spaced_nodes(0, kPi / 2, azimuths / 4 + 1);
     phi_o = {"phi_o", "rad", nodes_round(azimuths), 1, 2 * kPi};
   }
-  axes.push_back({"cos_theta_i", "1", cosines});
+  cosine.name = "cos_theta_i";
+  axes.push_back(cosine);
   axes.push_back(phi_i);
-  axes.push_back({"cos_theta_o", "1", cosines});
+  cosine.name = "cos_theta_o";
+  axes.push_back(cosine);
   axes.push_back(phi_o);
   return axes;
+}
+
+// To three binary digits, so that it takes next to no room in a file. Nobody needs a noise more exactly.
+double coarse(double standard_error) {
+  int exponent = 0;
+  const double fraction = std::frexp(standard_error, &exponent);
+  return std::ldexp(std::round(8 * fraction) / 8, exponent);
 }
 
 // Parameters of node `index` of the flattened grid.
@@ -189,10 +202,11 @@ class Sweep {
       : recipe_(recipe), settings_(settings), orbits_(recipe) {
     table_.material = recipe.material;
     table_.symmetry = symmetry_of(recipe);
+    table_.frame = recipe.table.frame;
     bake_film(recipe, table_);
     const auto axes = rest_axes(recipe);
     table_.remainder = NdArray("remainder", axes, recipe.table.precision);
-    table_.rest_stderr = NdArray("rest_stderr", axes, recipe.table.precision);
+    table_.rest_stderr = NdArray("rest_stderr", axes, Precision::single_float, 1);
     for (const double c : axes[3].nodes)
       for (const double phi : axes[4].nodes) wi_.push_back(direction_from_cosine(c, phi));
     for (const double c : axes[5].nodes)
@@ -220,23 +234,30 @@ class Sweep {
       walks_ += rows.back().estimates * model.walks_per_estimate();
     }
     orbits_.average(rows);
-    store(node, parameters, material, rows);
+    if (table_.frame == FrameKind::closed) frame(parameters, material, rows);
+    store(node, rows);
   }
 
-  void store(std::size_t node, const Parameters& parameters, const Material& material,
-             const std::vector<Row>& rows) {
+  void store(std::size_t node, const std::vector<Row>& rows) {
+    std::size_t cell = node * table_.remainder.stride(2);
+    for (std::size_t i = 0; i < wi_.size(); ++i)
+      for (std::size_t o = 0; o < wo_.size(); ++o, ++cell) {
+        table_.remainder.set(cell, rows[i].value[o]);
+        table_.rest_stderr.set(cell, Rgb(coarse(mean(rows[i].standard_error[o]))));
+      }
+  }
+
+  void frame(const Parameters& parameters, const Material& material, std::vector<Row>& rows) const {
     const RestFrame frame(material, table_.first_visit);
     const auto transmittance = [&](double cosine) {
       return table_.transmittance({parameters.film_thickness_nm, parameters.base_ior, cosine});
     };
-    std::size_t cell = node * table_.remainder.stride(2);
+    std::vector<Rgb> t_o;
+    for (const Vec3& w : wo_) t_o.push_back(transmittance(w.z));
     for (std::size_t i = 0; i < wi_.size(); ++i) {
       const Rgb t_i = transmittance(wi_[i].z);
-      for (std::size_t o = 0; o < wo_.size(); ++o, ++cell) {
-        table_.remainder.set(
-            cell, frame.encode(rows[i].value[o], wi_[i].z, wo_[o].z, t_i, transmittance(wo_[o].z)));
-        table_.rest_stderr.set(cell, rows[i].standard_error[o]);
-      }
+      for (std::size_t o = 0; o < wo_.size(); ++o)
+        rows[i].value[o] = frame.encode(rows[i].value[o], wi_[i].z, wo_[o].z, t_i, t_o[o]);
     }
   }
 
@@ -278,8 +299,8 @@ double bytes_of(const Recipe& recipe, Encoding encoding) {
     return bytes_of(factors.arrival) + bytes_of(factors.returned) + bytes_of(factors.exchange);
   }
   const double value = recipe.table.precision == Precision::half_float ? 2 : 4;
-  const double films = recipe.material.is_smooth() ? 1 : 2;
-  return 2 * 3 * value * cells_of(rest_axes(recipe)) + films * 3 * 4 * cells_of(film_axes(recipe));
+  const double films = recipe.material.is_smooth() || recipe.table.frame == FrameKind::none ? 1 : 2;
+  return (3 * value + 4) * cells_of(rest_axes(recipe)) + films * 3 * 4 * cells_of(film_axes(recipe));
 }
 
 }  // namespace
@@ -297,7 +318,7 @@ void require_reasonable_size(const Recipe& recipe, Encoding encoding) {
     factor_axes(recipe);
     return;
   }
-  constexpr double kMostCells = 1 << 28;  // two arrays of three floats: 6.4 GB
+  constexpr double kMostCells = 1 << 28;  // four floats each: 4.3 GB
   const double rest = cells_of(rest_axes(recipe)), film = cells_of(film_axes(recipe));
   if (rest > kMostCells)
     throw Error(

@@ -3,32 +3,45 @@
 namespace sunbeam {
 namespace {
 
-constexpr std::size_t kCurveNodes = 129;
+constexpr std::size_t kCurveNodes = 1025;  // linear between: towards grazing T is curved
 
-// Shares of the interval between an axis' ends that belong to its nodes, for a function linear between them.
-std::vector<double> trapezoid(const Axis& axis) {
+// Shares of the nodes in the mean over the axis: two Gauss points an interval are exact for cubics.
+std::vector<double> mean_weights(const Axis& axis) {
   const std::size_t n = axis.size();
   if (n == 1) return {1};
+  const double gauss = 0.5 / std::sqrt(3.0);
   std::vector<double> weights(n);
-  for (std::size_t k = 0; k + 1 < n; ++k) {
-    const double half = (axis.nodes[k + 1] - axis.nodes[k]) / (2 * (axis.high() - axis.low()));
-    weights[k] += half;
-    weights[k + 1] += half;
-  }
+  for (std::size_t k = 0; k + 1 < n; ++k)
+    for (const double t : {0.5 - gauss, 0.5 + gauss}) {
+      const Stencil at = axis.stencil(lerp(t, axis.nodes[k], axis.nodes[k + 1]));
+      const double share = (axis.nodes[k + 1] - axis.nodes[k]) / (2 * (axis.nodes.back() - axis.nodes[0]));
+      for (std::size_t j = 0; j < at.count; ++j) weights[at.node[j]] += share * at.weight[j];
+    }
   return weights;
 }
 
 }  // namespace
 
 DenseRest::DenseRest(const Table& table, const Material& material)
-    : symmetry_(table.symmetry), frame_(material, table.first_visit) {
+    : symmetry_(table.symmetry), is_full_(table.is_full_spectrum()) {
   const auto point = Parameters::of(material).values();
-  remainder_ = table.remainder.slice(point);
+  const NdArray sliced = table.remainder.slice(point);
   stderr_ = table.rest_stderr.slice(point);
-  has_azimuth_ = remainder_.axes()[1].size() > 1 || remainder_.axes()[3].size() > 1;
-  for (std::size_t i = 0; i < kCurveNodes; ++i)
-    transmittance_.push_back(
-        table.transmittance({point[0], point[1], static_cast<double>(i) / (kCurveNodes - 1)}));
+  for (std::size_t k = 0; k < 4; ++k) {
+    axes_[k] = sliced.axes()[k];
+    bound_axes_[k] = BoundAxis(axes_[k], sliced.stride(k));
+  }
+  for (std::size_t cell = 0; cell < sliced.cells(); ++cell) remainder_.push_back(to_color4(sliced.get(cell)));
+  has_azimuth_ = axes_[1].size() > 1 || axes_[3].size() > 1;
+  if (table.frame == FrameKind::none) return;
+  frame_.emplace(material, table.first_visit);
+  const bool reflects = table.film_transmittance.empty();
+  const NdArray film =
+      (reflects ? table.film_reflectance : table.film_transmittance).slice(std::span(point).first(2));
+  for (std::size_t i = 0; i < kCurveNodes; ++i) {
+    const Rgb value = film.interpolate(std::array{static_cast<double>(i) / (kCurveNodes - 1)});
+    transmittance_.push_back(reflects ? Rgb(1) - value : value);
+  }
 }
 
 Rgb DenseRest::transmittance(double cosine) const {
@@ -36,28 +49,61 @@ Rgb DenseRest::transmittance(double cosine) const {
   return (1 - at.upper_weight) * transmittance_[at.lower] + at.upper_weight * transmittance_[at.upper];
 }
 
-std::array<double, 4> DenseRest::coordinates(const Vec3& wo, const Vec3& wi) const {
+AngleCoordinates DenseRest::coordinates(const Vec3& wo, const Vec3& wi) const {
   if (!has_azimuth_) return {wi.z, 0, wo.z, 0};
-  const AngleCoordinates c = to_coordinates(symmetry_, {wo, wi});
-  return {c.cos_i, c.phi_i, c.cos_o, c.phi_o};
+  return to_coordinates(symmetry_, {wo, wi});
+}
+
+Rgb DenseRest::remainder(const AngleCoordinates& at) const {
+  const auto i = bound_axes_[0].at(at.cos_i), o = bound_axes_[2].at(at.cos_o);
+  Color4 sum{};
+  if (!has_azimuth_) {
+    for (int a = 0; a < i.count; ++a) {
+      const Color4* row = remainder_.data() + i.offset[a];
+      Color4 of_row{};
+      for (int b = 0; b < o.count; ++b) of_row += o.weight[b] * row[o.offset[b]];
+      sum += i.weight[a] * of_row;
+    }
+    return to_rgb(sum);
+  }
+  const auto phi_i = bound_axes_[1].at(at.phi_i), phi_o = bound_axes_[3].at(at.phi_o);
+  for (int a = 0; a < i.count; ++a)
+    for (int b = 0; b < phi_i.count; ++b) {
+      const Color4* block = remainder_.data() + i.offset[a] + phi_i.offset[b];
+      Color4 of_block{};
+      for (int c = 0; c < o.count; ++c) {
+        const Color4* row = block + o.offset[c];
+        Color4 of_row{};
+        for (int d = 0; d < phi_o.count; ++d) of_row += phi_o.weight[d] * row[phi_o.offset[d]];
+        of_block += o.weight[c] * of_row;
+      }
+      sum += i.weight[a] * phi_i.weight[b] * of_block;
+    }
+  return to_rgb(sum);
+}
+
+Rgb DenseRest::decoded(const Rgb& remainder, double cos_i, double cos_o) const {
+  if (frame_) return frame_->decode(remainder, cos_i, cos_o, transmittance(cos_i), transmittance(cos_o));
+  if (is_full_) return remainder;
+  return transform(remainder, [](double x) { return std::max(0.0, x); });
 }
 
 Rgb DenseRest::operator()(const Vec3& wo, const Vec3& wi) const {
-  const Rgb remainder = remainder_.interpolate(coordinates(wo, wi));
-  return frame_.decode(remainder, wi.z, wo.z, transmittance(wi.z), transmittance(wo.z));
+  return decoded(remainder(coordinates(wo, wi)), wi.z, wo.z);
 }
 
 Rgb DenseRest::standard_error(const Vec3& wo, const Vec3& wi) const {
-  return stderr_.interpolate(coordinates(wo, wi));
+  const AngleCoordinates c = coordinates(wo, wi);
+  const Rgb error = stderr_.interpolate(std::array{c.cos_i, c.phi_i, c.cos_o, c.phi_o});
+  return transform(error, [](double x) { return std::max(0.0, x); });
 }
 
-// The table is linear between azimuths, so that the trapezoids of its nodes are exact. Those of an isotropic
-// table are azimuths of wi from wo; those of an anisotropic one are of a quadrant, and wo mirrored stands for
-// wi in the other three.
+// Azimuths of an isotropic table are those of wi from wo; those of an anisotropic one are of a quadrant, and
+// wo mirrored stands for wi in the other three.
 DenseRest::AzimuthMean::AzimuthMean(const DenseRest& rest, const Vec3& wo) : rest_(rest), cos_o_(wo.z) {
   const bool isotropic = rest.symmetry_ == Symmetry::isotropic;
-  const Axis& axis = rest.remainder_.axes()[isotropic ? 3 : 1];
-  const auto weights = trapezoid(axis);
+  const Axis& axis = rest.axes_[isotropic ? 3 : 1];
+  const auto weights = mean_weights(axis);
   for (std::size_t k = 0; k < axis.size(); ++k) {
     if (isotropic) {
       nodes_.push_back({0, axis.nodes[k], weights[k]});
@@ -72,10 +118,8 @@ DenseRest::AzimuthMean::AzimuthMean(const DenseRest& rest, const Vec3& wo) : res
 Rgb DenseRest::AzimuthMean::operator()(double cos_i) const {
   Rgb remainder;
   for (const Node& node : nodes_)
-    remainder +=
-        node.weight * rest_.remainder_.interpolate(std::array{cos_i, node.phi_i, cos_o_, node.phi_o});
-  return rest_.frame_.decode(remainder, cos_i, cos_o_, rest_.transmittance(cos_i),
-                             rest_.transmittance(cos_o_));
+    remainder += node.weight * rest_.remainder({cos_i, node.phi_i, cos_o_, node.phi_o});
+  return rest_.decoded(remainder, cos_i, cos_o_);
 }
 
 }  // namespace sunbeam

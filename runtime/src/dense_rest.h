@@ -1,9 +1,12 @@
-// The rest of a dense table (table.h) at one parameter point.
+// The rest of a dense table (table.h) at one parameter point: flat arrays of single floats over the angles.
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
+#include "bound_axis.h"
+#include "color4.h"
 #include "sunbeam/table.h"
 
 namespace sunbeam {
@@ -34,13 +37,19 @@ class DenseRest {
 
  private:
   Rgb transmittance(double cosine) const;
-  std::array<double, 4> coordinates(const Vec3& wo, const Vec3& wi) const;
+  AngleCoordinates coordinates(const Vec3& wo, const Vec3& wi) const;
+  Rgb remainder(const AngleCoordinates& at) const;
+  Rgb decoded(const Rgb& remainder, double cos_i, double cos_o) const;
 
   Symmetry symmetry_;
-  RestFrame frame_;
+  std::optional<RestFrame> frame_;  // none: the array holds the rest itself
+  bool is_full_;
   std::vector<Rgb> transmittance_;  // over even cosines
-  NdArray remainder_, stderr_;      // over the four angles
-  bool has_azimuth_;                // else they have one node each, and finding the azimuths would be in vain
+  std::array<Axis, 4> axes_;        // of the angles, in the order of the table
+  std::array<BoundAxis, 4> bound_axes_;
+  std::vector<Color4> remainder_;
+  NdArray stderr_;    // over the four angles
+  bool has_azimuth_;  // else those axes have one node each, and finding the azimuths would be in vain
 };
 
 }  // namespace sunbeam

@@ -19,7 +19,7 @@ ColorSpace Table::color_space() const {
 bool Table::operator==(const Table& other) const {
   for (const auto& key : material_keys())
     if (get_text(material, key) != get_text(other.material, key)) return false;
-  return symmetry == other.symmetry && factors == other.factors &&
+  return symmetry == other.symmetry && factors == other.factors && frame == other.frame &&
          film_reflectance == other.film_reflectance && film_transmittance == other.film_transmittance &&
          first_visit == other.first_visit && remainder == other.remainder &&
          rest_stderr == other.rest_stderr && info == other.info;

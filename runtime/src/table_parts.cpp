@@ -233,12 +233,20 @@ Factors read_factors(const TableParts& parts, const Table& table) {
   return factors;
 }
 
+FrameKind read_frame(const Attributes& attributes) {
+  const std::string& name = require(attributes, "rest_frame");
+  for (const auto frame : {FrameKind::closed, FrameKind::none})
+    if (name == name_of(frame)) return frame;
+  throw Error("attribute 'rest_frame' is '" + name + "'; allowed: closed, none");
+}
+
 void read_dense(const TableParts& parts, Table& table) {
+  table.frame = read_frame(parts.attributes);
   table.film_reflectance = checked_array(parts, "film_reflectance", kFilmAxes);
-  if (!table.material.is_smooth())
+  if (!table.material.is_smooth() && table.frame == FrameKind::closed)
     table.film_transmittance = checked_array(parts, "film_transmittance", kFilmAxes);
   table.remainder = checked_array(parts, "remainder", kRestAxes);
-  table.rest_stderr = checked_array(parts, "rest_stderr", kRestAxes);
+  table.rest_stderr = checked_array(parts, "rest_stderr", kRestAxes, 1);
 }
 
 // What the colours are. `spectrum` is part of the info already.
@@ -250,7 +258,8 @@ void read_spectrum(const TableParts& parts, Table& table) {
   if (spectrum == "rgb3") return;
   for (const char* key : {"color_space", "illuminant", "wavelengths"})
     table.info[key] = require(attributes, key);
-  if (!table.is_factored()) table.first_visit = checked_array(parts, "first_visit", kFirstVisitAxes);
+  if (!table.is_factored() && table.frame == FrameKind::closed)
+    table.first_visit = checked_array(parts, "first_visit", kFirstVisitAxes);
   try {
     table.color_space();
   } catch (const Error& error) {
@@ -350,6 +359,7 @@ TableParts to_parts(const Table& table) {
       parts.attributes[kGridPrefix + key] = value;
     write_wavelengths(table.factors.wavelengths, parts.attributes);
   }
+  if (!table.is_factored()) parts.attributes["rest_frame"] = name_of(table.frame);
   const Factors& f = table.factors;
   for (const NdArray* array :
        {&f.arrival, &f.returned, &f.exchange, &table.film_reflectance, &table.remainder, &table.rest_stderr,

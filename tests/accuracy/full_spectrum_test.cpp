@@ -50,7 +50,7 @@ TEST(FullSpectrumTable, AgreesWithTheExactModel) {
     EXPECT_LT(report.error.median, 0.03) << c.name;
     EXPECT_LT(report.error.p99, 0.08) << c.name;
     EXPECT_LT(report.dirac_error_p99, 0.003) << c.name;
-    EXPECT_LT(report.reciprocity_max, 1e-9) << c.name;
+    EXPECT_LT(report.reciprocity_max, 1e-5) << c.name;  // look-ups in single floats
     EXPECT_LT(report.energy_max, 1.02) << c.name;
   }
 }

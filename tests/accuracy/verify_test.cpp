@@ -60,7 +60,7 @@ TEST(Verify, GoodTableIsWithinTolerance) {
     EXPECT_TRUE(within_tolerance(report, s))
         << roughness << ": " << report.error.median << ' ' << report.error.p99;
     EXPECT_LE(report.energy_max, 1);
-    EXPECT_LT(report.reciprocity_max, 1e-9);
+    EXPECT_LT(report.reciprocity_max, 1e-6);  // look-ups in single floats
     EXPECT_EQ(report.truth, "pfmc-unidirectional");
     EXPECT_EQ(report.points.size(), 40u);
   }
@@ -130,8 +130,9 @@ TEST(Verify, ShiftedFilmReflectance) {
 }
 
 // Stored values moved at random by 40 % leave the remainder off by 0.4 sqrt(2 / pi) = 32 % on average at the
-// nodes; linear interpolation in two directions averages up to four of them, so that between a third and all
-// of it is left, times the remainder's share. And the table is not symmetric any more.
+// nodes; cubic interpolation in two directions averages some of them and overshoots beside the ends, so that
+// between a third and 1.3 times of it is left, times the remainder's share. And the table is not symmetric
+// any more.
 TEST(Verify, NoisyTable) {
   Table damaged = clear_table();
   Rng rng(1, 0);
@@ -142,7 +143,7 @@ TEST(Verify, NoisyTable) {
   const double whole = 0.4 * std::sqrt(2 / kPi) * later_visits_share(damaged.material);
   const VerifyReport report = verify(damaged, settings(40, 0.03));
   EXPECT_GT(report.error.median, whole / 3);
-  EXPECT_LT(report.error.median, whole + 0.01);
+  EXPECT_LT(report.error.median, 1.3 * whole + 0.01);
   EXPECT_GT(report.reciprocity_max, 0.01);
 }
 

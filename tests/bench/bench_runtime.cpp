@@ -4,11 +4,14 @@
 // build/release/bin/bench_runtime
 #include <benchmark/benchmark.h>
 
+#include <map>
+#include <string>
 #include <vector>
 
 #include "bake/live/exact_bsdf.h"
 #include "bake/live/live_bsdf.h"
 #include "bake/recipe.h"
+#include "bake/sweep.h"
 #include "sunbeam/lambert.h"
 #include "sunbeam/table_bsdf.h"
 #include "sunbeam/table_io.h"
@@ -35,6 +38,23 @@ const Table& table() {
   static const Table loaded = load_table_exr(SUNBEAM_SOURCE_DIR "/tables/golden/preview.exr");
   return loaded;
 }
+
+// Dense tables of any content as large as baked ones: of plain materials, and of those with azimuth.
+const Bsdf& dense_bsdf(const std::string& material, const std::string& table) {
+  static std::map<std::string, TableBsdf> bound;
+  const auto known = bound.find(material);
+  if (known != bound.end()) return known->second;
+  const Recipe recipe = parse_recipe("[material]\n" + material +
+                                         "\n[spectrum]\nmode = \"full\"\n[table]\nencoding = \"dense\"\n" +
+                                         table + "\n[accuracy]\nnoise = 1",
+                                     "dense");
+  const Table baked = bake_table(recipe, {.seed = 1, .threads = 0, .on_progress = {}});
+  return bound.try_emplace(material, baked, Parameters::of(baked.material), OutsideGrid::refuse)
+      .first->second;
+}
+const Bsdf& dense_plain() { return dense_bsdf("roughness = 0.1", "angles = 12"); }
+const Bsdf& dense_scattering() { return dense_bsdf("scattering_per_nm = 0.5", "angles = 10\nazimuths = 7"); }
+const Bsdf& dense_anisotropic() { return dense_bsdf("roughness = [0.1, 0.3]", "angles = 10\nazimuths = 8"); }
 
 const Bsdf& table_bsdf() {
   static const TableBsdf bsdf(table(), Parameters::of(table().material), OutsideGrid::refuse);
@@ -96,6 +116,9 @@ void yardstick(benchmark::State& state) {
 BENCHMARK(yardstick);
 BENCHMARK_CAPTURE(eval, lambert, lambert_bsdf());
 BENCHMARK_CAPTURE(eval, table, table_bsdf());
+BENCHMARK_CAPTURE(eval, dense_plain, dense_plain());
+BENCHMARK_CAPTURE(eval, dense_scattering, dense_scattering());
+BENCHMARK_CAPTURE(eval, dense_anisotropic, dense_anisotropic());
 BENCHMARK_CAPTURE(eval, exact, exact_bsdf());
 BENCHMARK_CAPTURE(eval, live, live_bsdf());
 BENCHMARK_CAPTURE(mis_pdf, lambert, lambert_bsdf());
@@ -104,6 +127,8 @@ BENCHMARK_CAPTURE(mis_pdf, exact, exact_bsdf());
 BENCHMARK_CAPTURE(mis_pdf, live, live_bsdf());
 BENCHMARK_CAPTURE(sample, lambert, lambert_bsdf());
 BENCHMARK_CAPTURE(sample, table, table_bsdf());
+BENCHMARK_CAPTURE(sample, dense_plain, dense_plain());
+BENCHMARK_CAPTURE(sample, dense_scattering, dense_scattering());
 BENCHMARK_CAPTURE(sample, exact, exact_bsdf());
 BENCHMARK_CAPTURE(sample, live, live_bsdf());
 

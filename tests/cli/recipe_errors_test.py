@@ -57,6 +57,8 @@ class RecipeErrors(support.CliTest):
         self.check("table", "azimuths", "0", "found 0;", "1 to 512")
         self.check("table", "precision", '"double"', 'found "double"', '"half", "float"')
         self.check("table", "encoding", '"sparse"', 'found "sparse"', '"dense"')
+        self.check("table", "frame", '"open"', 'found "open"', '"closed"')
+        self.check("table", "frame", '"none"', 'found "none"', '"dense"')
         self.check("accuracy", "noise", "0", "found 0;", "0.0001 to 1")
         self.check("accuracy", "noise", "nan", "found nan")
         self.check("accuracy", "tolerance_median", "0.0", "found 0;")

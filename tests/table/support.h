@@ -118,7 +118,7 @@ inline Table small_table(Precision precision = Precision::half_float, bool rough
   table.material.albedo = {0.1, 0.2, 1.0 / 3};
   table.film_reflectance = NdArray("film_reflectance", small_film_axes(), Precision::single_float);
   table.remainder = NdArray("remainder", small_rest_axes(), precision);
-  table.rest_stderr = NdArray("rest_stderr", small_rest_axes(), precision);
+  table.rest_stderr = NdArray("rest_stderr", small_rest_axes(), precision, 1);
   fill_randomly(table.film_reflectance, 0, 1, 0);
   fill_randomly(table.remainder, -0.01, 0.2, 1);
   fill_randomly(table.rest_stderr, 0, 0.001, 2);
@@ -140,7 +140,7 @@ inline Table small_anisotropic_table(Precision precision = Precision::half_float
   axes[4] = axis("phi_i", {0, kPi / 4, kPi / 2});
   axes[6] = full_circle("phi_o", 8);
   table.remainder = NdArray("remainder", axes, precision);
-  table.rest_stderr = NdArray("rest_stderr", axes, precision);
+  table.rest_stderr = NdArray("rest_stderr", axes, precision, 1);
   fill_randomly(table.remainder, -0.01, 0.2, 1);
   fill_randomly(table.rest_stderr, 0, 0.001, 2);
   return table;

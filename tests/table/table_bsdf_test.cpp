@@ -67,6 +67,19 @@ TEST(TableBsdf, InterpolatesParameters) {
   EXPECT_NEAR(bsdf.rest(kOblique, spherical_direction(0.2, 3)).g, 0.2, 1e-7);
 }
 
+// Without a frame the array holds the rest itself, and no closed form is asked for.
+TEST(TableBsdf, WithoutAFrameTheArrayIsTheRest) {
+  Table table = constant_table(true, 0.3, 0.1, 0.5);
+  table.frame = FrameKind::none;
+  table.film_transmittance = NdArray();
+  for (const auto& form : test::forms()) {
+    const Table loaded = form.parse(form.bytes(table), "t");
+    EXPECT_TRUE(loaded == table) << form.name;
+    const TableBsdf bsdf(loaded, kBetween, OutsideGrid::refuse);
+    EXPECT_NEAR(bsdf.rest(kOblique, spherical_direction(1.2, 2)).r, 0.1, 1e-7);
+  }
+}
+
 // rest = T T (kd/pi + remainder) = 0.7^2 (0.5/pi + 0.1), albedo = R + pi rest for a smooth film.
 TEST(TableBsdf, ConstantTableInClosedForm) {
   const TableBsdf bsdf(constant_table(false, 0.3, 0.1, 0.5), kBetween, OutsideGrid::refuse);

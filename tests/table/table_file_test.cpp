@@ -44,7 +44,7 @@ TEST(TableFile, RoundTripIsTheSameTable) {
 
 TEST(TableFile, TablesThatDifferAnywhereAreNotEqual) {
   const Table table = small_table();
-  std::vector<Table> others(8, table);
+  std::vector<Table> others(9, table);
   others[0].material.film_ior += 1e-15;
   others[1].symmetry = Symmetry::anisotropic;
   others[2].film_reflectance.set(4, Rgb(0.77));
@@ -53,6 +53,7 @@ TEST(TableFile, TablesThatDifferAnywhereAreNotEqual) {
   others[5].rest_stderr.set(287, Rgb(0.77));
   others[6].info["seed"] = "8";
   others[7].first_visit = test::small_full_table().first_visit;
+  others[8].frame = FrameKind::none;
   EXPECT_TRUE(table == small_table());
   for (std::size_t k = 0; k < others.size(); ++k) EXPECT_FALSE(others[k] == table) << k;
 }

@@ -41,7 +41,7 @@ struct Defect {
 
 // The array anew, with other axes or another name; content does not matter.
 NdArray rebuilt(const NdArray& array, std::vector<Axis> axes, const std::string& name = "") {
-  NdArray result(name.empty() ? array.name() : name, std::move(axes), array.precision());
+  NdArray result(name.empty() ? array.name() : name, std::move(axes), array.precision(), array.channels());
   test::fill_randomly(result, 0, 1, 9);
   return result;
 }
@@ -218,6 +218,15 @@ std::string with_attribute(const Form& form, std::string bytes, const std::strin
   return bytes;
 }
 
+TEST(TableReader, UnknownRestFrame) {
+  for (const Form& form : forms()) {
+    const auto bytes = with_attribute(form, form.bytes(small_table()), "rest_frame", "closed", "opened");
+    EXPECT_THAT(refusal(form, bytes, kName),
+                AllOf(StartsWith(kName), HasSubstr("'rest_frame' is 'opened'"), HasSubstr("closed, none")))
+        << form.name;
+  }
+}
+
 TEST(TableReader, UnknownSchemaVersion) {
   for (const Form& form : forms()) {
     const auto bytes = with_attribute(form, form.bytes(small_table()), "schema_version", "2", "3");
@@ -285,10 +294,10 @@ TEST(TableReader, ForeignExr) {
   {
     Imf::Header header(4, 3);
     header.insert("sunbeam.schema_version", Imf::StringAttribute("1"));
-    header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+    header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
     std::vector<float> pixels(12, 0.5f);
     Imf::FrameBuffer buffer;
-    buffer.insert("Y", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels.data()), 4, 16));
+    buffer.insert("Z", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels.data()), 4, 16));
     Imf::OutputFile file(grey.c_str(), header);
     file.setFrameBuffer(buffer);
     file.writePixels(3);
@@ -328,10 +337,7 @@ TEST(TableWriter, ValuesThatAreNotFiniteAreRefused) {
          t.remainder.set(17, {0, kNan, 0});
        }},
       {"remainder", [](Table& t) { t.remainder.set(0, Rgb(1e6)); }},  // beyond a half
-      {"rest_stderr",
-       [](Table& t) {
-         t.rest_stderr.set(287, {0, 0, kInf});
-       }},
+      {"rest_stderr", [](Table& t) { t.rest_stderr.set(287, Rgb(kInf)); }},
       {"film_reflectance", [](Table& t) { t.film_reflectance.set(0, Rgb(kNan)); }}};
   for (const Form& form : forms())
     for (const auto& [array, spoil] : defects) {

@@ -25,6 +25,8 @@
 //   decay(x) = F(x) / F(0), kept within a factor of 10 of D = max(mean F(x) / mean F(0), exp(-12)); D if F(0)
 //   <= 0; or 1 as above,
 // with F = `first_visit`, T in front is raised to 30 % of its mean over channels, and values may be negative.
+//
+// With FrameKind::none there is no closed form in the rest at all: it is what the array `remainder` holds.
 #pragma once
 
 #include <array>
@@ -61,24 +63,34 @@ struct Parameters {
   std::array<double, 3> values() const { return {film_thickness_nm, base_ior, absorption_per_nm}; }
 };
 
+// What the array `remainder` of a dense table stands in: see above.
+enum class FrameKind { closed, none };
+
+constexpr const char* name_of(FrameKind frame) { return frame == FrameKind::closed ? "closed" : "none"; }
+
 struct Table {
   Material material;  // fixed values, and defaults for the parameters
   Symmetry symmetry = Symmetry::isotropic;
 
   Factors factors;  // encoding "factored", else empty; the arrays below are then empty
 
+  FrameKind frame = FrameKind::closed;
+
   // Axes (film_thickness_nm, base_ior, cos_theta); finer than the grid, as fringes need it.
   NdArray film_reflectance;
-  NdArray film_transmittance;  // empty for a smooth film
+  NdArray film_transmittance;  // empty for a smooth film, and without a frame
 
-  // Spectrum "full" only, else empty. Axis optical_path: the base under its pigment without the film, times
-  // pi, folded over the wavelengths: F(x) = fold(kd exp(-a x)), a = absorption relative to the one at 510 nm.
+  // Spectrum "full" with a frame only, else empty. Axis optical_path: the base under its pigment without the
+  // film, times pi, folded over the wavelengths: F(x) = fold(kd exp(-a x)), a = absorption relative to the
+  // one at 510 nm.
   NdArray first_visit;
 
   // Axes (film_thickness_nm, base_ior, absorption_per_nm, cos_theta_i, phi_i, cos_theta_o, phi_o); a
   // parameter that is not in the grid has one node.
   NdArray remainder;
-  NdArray rest_stderr;  // standard error of rest, 1/sr, same axes
+  // Standard error of rest, 1/sr, same axes: one number a cell, the mean over channels, to three binary
+  // digits.
+  NdArray rest_stderr;
 
   // Provenance and measured error as text: recipe, recipe_hash, seed, samples, estimator, spectrum,
   // tool_version, encoding, error.<name>; with spectrum "full" also color_space, illuminant, wavelengths.
@@ -102,7 +114,7 @@ struct Table {
   bool operator==(const Table& other) const;
 };
 
-// The remainder's frame at one parameter point, shared by the bake (encode) and the look-up (decode).
+// The remainder's closed frame at one parameter point, shared by the bake (encode) and the look-up (decode).
 class RestFrame {
  public:
   // Where the remainder does not decay it has lobes, of a peaked phase function or of nearly smooth facets at

@@ -12,8 +12,9 @@
 namespace sunbeam {
 namespace {
 
-constexpr double kNodesPerFringe = 10;         // of arrival and returned: cubic to 4e-4 of a fringe
-constexpr double kExchangeNodesPerFringe = 3;  // most of exchange has no fringes
+constexpr double kNodesPerFringe = 10;              // of arrival and returned: cubic to 4e-4 of a fringe
+constexpr double kExchangeNodesPerFringe = 3;       // most of exchange has no fringes
+constexpr double kMoreNodesPerFringeOverWhite = 8;  // 3 alone would be off by 1 % of the albedo there
 constexpr std::size_t kLeastFringeNodes = 6;
 constexpr std::size_t kAlbedoNodes = 3;           // where wavelengths differ; the series in kd converges fast
 constexpr std::size_t kDepthNodesOfOneValue = 5;  // where only wavelengths make depths differ
@@ -118,6 +119,12 @@ Axis orders_axis(const Recipe& recipe, const Wavelengths& w, double least_cosine
         low, high,
         std::max(kLeastFringeNodes, static_cast<std::size_t>(std::ceil((high - low) * per_fringe)) + 1));
   return cubic(axis);
+}
+
+// Later visits carry the fringes, and their series ends the later the brighter the base.
+double exchange_nodes_per_fringe(const Wavelengths& w) {
+  return kExchangeNodesPerFringe +
+         kMoreNodesPerFringeOverWhite * square(*std::max_element(w.albedo.begin(), w.albedo.end()));
 }
 
 Axis depths_axis(const Recipe& recipe, const Wavelengths& w) {
@@ -466,8 +473,9 @@ Factors factor_axes(const Recipe& recipe) {
         checked_array(recipe, "returned", {ior, depths, orders_axis(recipe, w, 1, kNodesPerFringe)},
                       Precision::single_float);
   } else {
-    auto axes = joined({ior, depths, albedos_axis(w), orders_axis(recipe, w, 1, kExchangeNodesPerFringe)},
-                       direction_axes(recipe, "_i"));
+    auto axes =
+        joined({ior, depths, albedos_axis(w), orders_axis(recipe, w, 1, exchange_nodes_per_fringe(w))},
+               direction_axes(recipe, "_i"));
     factors.exchange =
         checked_array(recipe, "exchange", joined(axes, direction_axes(recipe, "_o")), recipe.table.precision);
   }

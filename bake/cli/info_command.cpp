@@ -25,13 +25,35 @@ const std::vector<Axis>& axes_of(const Table& table) {
   return table.is_factored() ? table.factors.grid : table.remainder.axes();
 }
 
+Json describe(const std::vector<Axis>& axes) {
+  Json json = Json::array();
+  for (const Axis& axis : axes)
+    json.push_back({{"name", axis.name}, {"unit", axis.unit}, {"nodes", axis.nodes}});
+  return json;
+}
+
+// Those it has, in the order of its file.
+std::vector<const NdArray*> arrays_of(const Table& table) {
+  const Factors& f = table.factors;
+  std::vector<const NdArray*> arrays;
+  for (const NdArray* array : {&f.arrival, &f.exchange, &table.film_reflectance, &table.film_transmittance,
+                               &table.first_visit, &table.remainder, &table.rest_stderr, &f.returned})
+    if (!array->empty()) arrays.push_back(array);
+  return arrays;
+}
+
+const char* name_of(Precision precision) { return precision == Precision::half_float ? "half" : "float"; }
+
 Json describe(const Table& table, const std::string& path) {
   Json json;
   json["schema_version"] = kTableSchemaVersion;
   json["encoding"] = table.info.at("encoding");
   json["bytes"] = std::filesystem::file_size(path);
-  for (const Axis& axis : axes_of(table))
-    json["axes"].push_back({{"name", axis.name}, {"unit", axis.unit}, {"nodes", axis.nodes}});
+  json["axes"] = describe(axes_of(table));
+  for (const NdArray* array : arrays_of(table))
+    json["arrays"].push_back({{"name", array->name()},
+                              {"precision", name_of(array->precision())},
+                              {"axes", describe(array->axes())}});
   for (const char* key : {"recipe", "recipe_hash"}) json[key] = table.info.at(key);
   for (const char* key : {"seed", "samples"}) json[key] = std::stoull(table.info.at(key));
   for (const char* key : {"estimator", "spectrum"}) json[key] = table.info.at(key);
@@ -50,12 +72,17 @@ Json describe(const Table& table, const std::string& path) {
 
 void print_text(const Json& json, const Table& table) {
   for (const auto& [key, value] : json.items()) {
-    if (key == "axes" || key == "recipe" || key == "error") continue;
+    if (key == "axes" || key == "arrays" || key == "recipe" || key == "error") continue;
     fmt::print("{:<16}{}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
   }
   for (const Axis& axis : axes_of(table))
     fmt::print("axis            {:<18} {:>4} nodes, {:g} to {:g} {}\n", axis.name, axis.size(),
                axis.nodes.front(), axis.nodes.back(), axis.unit == "1" ? "" : axis.unit);
+  for (const NdArray* array : arrays_of(table)) {
+    fmt::print("array           {:<18} {}:", array->name(), name_of(array->precision()));
+    for (const Axis& axis : array->axes()) fmt::print(" {} {}", axis.name, axis.size());
+    fmt::print("\n");
+  }
   for (const auto& [key, value] : json["error"].items())
     fmt::print("error           {:<18} {}\n", key,
                value.is_string() ? value.get<std::string>() : value.dump());

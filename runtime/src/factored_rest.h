@@ -46,6 +46,10 @@ class FactoredRest {
   void take_arrival(const Factors& factors);
   void take_gain(const Factors& factors);
   void take_exchange(const Factors& factors);
+  void limit_gain(bool is_sum);
+  // Factor of A A of wavelength k that path "product" adds: all visits of the base, times gain.
+  double visits(const Row& i, const End& o, std::size_t k) const;
+  std::vector<double> leaving(const Row& from, std::span<const End> to) const;
 
   Material material_;
   Wavelengths wavelengths_;

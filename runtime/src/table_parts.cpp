@@ -154,6 +154,17 @@ void check_factor_axes(const Table& table, const NdArray& array, std::size_t fir
   }
 }
 
+// Look-ups locate wi and wo on the same nodes.
+void check_same_ends(const NdArray& exchange) {
+  const auto& axes = exchange.axes();
+  for (const std::size_t k : {4u, 5u}) {
+    Axis like_o = axes[k];
+    like_o.name = axes[k + 2].name;
+    if (!(like_o == axes[k + 2]))
+      throw Error("array 'exchange': axes '" + axes[k].name + "' and '" + like_o.name + "' differ");
+  }
+}
+
 std::vector<double> parse_numbers(const Attributes& attributes, const std::string& key) {
   std::vector<double> numbers;
   for (const auto& text : split(require(attributes, key), ' ')) {
@@ -224,11 +235,13 @@ Factors read_factors(const TableParts& parts, const Table& table) {
   }
   if (table.material.absorption_path == AbsorptionPath::sum) {
     factors.returned = checked_array(parts, "returned", kReturnedAxes, 1);
+    check_factor_axes(table, factors.returned, kReturnedAxes.size());
     for (const float value : factors.returned.values())
       if (!(value >= 0 && value <= 1)) throw Error("array 'returned' leaves 0 to 1");
   } else {
     factors.exchange = checked_array(parts, "exchange", kExchangeAxes, 1);
     check_factor_axes(table, factors.exchange, 4);
+    check_same_ends(factors.exchange);
   }
   return factors;
 }

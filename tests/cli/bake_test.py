@@ -1,5 +1,6 @@
 """`sunbeam bake`: the same recipe gives the same bytes, and a table appears only when it is complete."""
 
+import itertools
 import resource
 import signal
 import subprocess
@@ -8,17 +9,22 @@ import unittest
 
 import support
 
+# Facets make a factored table depend on walks to the last visible digit.
+ENCODINGS = {
+    "dense": ("--set", "table.encoding=dense"),
+    "factored": ("--set", "table.encoding=factored", "--set", "material.roughness=0.2"),
+}
+
 
 class Reproducibility(support.CliTest):
     @classmethod
     def prepare(cls):
-        bakes = {
-            "one.exr": ("--threads", "1"),
-            "two.exr": ("--threads", "2"),
-            "one.vdb": ("--threads", "1"),
-            "two.vdb": ("--threads", "2"),
-            "other.exr": ("--threads", "1", "--seed", "2"),
-        }
+        bakes = {}
+        for encoding, options in ENCODINGS.items():
+            for form in ("exr", "vdb"):
+                bakes[f"{encoding}_one.{form}"] = ("--threads", "1", *options)
+                bakes[f"{encoding}_two.{form}"] = ("--threads", "2", *options)
+            bakes[f"{encoding}_other.exr"] = ("--threads", "1", "--seed", "2", *options)
         cls.results = {
             name: support.succeed_in(cls.folder, "bake", "tiny.toml", "-o", name, *options)
             for name, options in bakes.items()
@@ -27,18 +33,20 @@ class Reproducibility(support.CliTest):
     def bytes_of(self, name):
         return (self.folder / name).read_bytes()
 
-    def test_exr_does_not_depend_on_threads(self):
-        self.assertEqual(self.bytes_of("one.exr"), self.bytes_of("two.exr"))
-
-    def test_vdb_does_not_depend_on_threads(self):
-        self.assertEqual(self.bytes_of("one.vdb"), self.bytes_of("two.vdb"))
+    def test_bytes_do_not_depend_on_threads(self):
+        for encoding in ENCODINGS:
+            for form in ("exr", "vdb"):
+                with self.subTest(encoding=encoding, form=form):
+                    self.assertEqual(self.bytes_of(f"{encoding}_one.{form}"), self.bytes_of(f"{encoding}_two.{form}"))
 
     def test_another_seed_gives_other_values(self):
-        self.assertNotEqual(self.bytes_of("one.exr"), self.bytes_of("other.exr"))
         points = "theta_i_deg,theta_o_deg,phi_deg\n30,40,180\n"
-        one, other = (self.succeed("eval", table, "--points", "-", stdin=points).out
-                      for table in ("one.exr", "other.exr"))
-        self.assertNotEqual(support.rows_of(one)[0]["rest_r"], support.rows_of(other)[0]["rest_r"])
+        for encoding in ENCODINGS:
+            with self.subTest(encoding=encoding):
+                tables = f"{encoding}_one.exr", f"{encoding}_other.exr"
+                self.assertNotEqual(*(self.bytes_of(table) for table in tables))
+                one, other = (self.succeed("eval", table, "--points", "-", stdin=points).out for table in tables)
+                self.assertNotEqual(support.rows_of(one)[0]["rest_r"], support.rows_of(other)[0]["rest_r"])
 
     def test_nothing_but_the_tables_is_left(self):
         self.assertEqual(self.names(), sorted(["tiny.toml", *self.results]))
@@ -48,7 +56,8 @@ class Reproducibility(support.CliTest):
             with self.subTest(table=name):
                 self.assertEqual(result.out, "")
                 self.assertIn("100 %", result.err)
-                self.assertIn(f"{name}: {len(self.bytes_of(name))} bytes", result.err)
+                encoding = name.split("_")[0]
+                self.assertIn(f"{name}: {encoding}, {len(self.bytes_of(name))} bytes", result.err)
 
 
 class Overrides(support.CliTest):
@@ -109,14 +118,17 @@ class Completeness(support.CliTest):
                 self.check_untouched()
 
     def test_an_interrupted_bake_leaves_the_old_table(self):
-        long_bake = [support.BINARY, "bake", "tiny.toml", "-o", "old.exr", "--threads", "1", "--set",
-                     "grid.film_thickness_nm={from=0, to=1000, count=500}", "--set", "accuracy.noise=0.0001"]
-        for stop in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
-            with self.subTest(signal=stop.name):
+        fine = ("--set", "grid.film_thickness_nm={from=0, to=1000, count=500}",
+                "--set", "grid.base_ior={from=1, to=2, count=100}", "--set", "table.angles=20",
+                "--set", "accuracy.noise=0.0001")
+        for encoding, stop in itertools.product(ENCODINGS, (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)):
+            with self.subTest(encoding=encoding, signal=stop.name):
+                long_bake = [support.BINARY, "bake", "tiny.toml", "-o", "old.exr", "--threads", "1", *fine,
+                             *ENCODINGS[encoding]]
                 process = subprocess.Popen(long_bake, cwd=self.folder, stderr=subprocess.PIPE)
                 try:
                     started = process.stderr.readline()  # the recipe is read and the output was probed
-                    self.assertIn(b"parameter nodes", started)
+                    self.assertIn(f"tiny.toml: {encoding}, ".encode(), started)
                     time.sleep(0.1)
                     self.assertIsNone(process.poll(), "the bake ended before it could be interrupted")
                 finally:

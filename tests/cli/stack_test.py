@@ -18,6 +18,7 @@ albedo = 0.5
 absorption_per_nm = [0.05, 0.2]
 
 [table]
+encoding = "{encoding}"
 angles = 4
 azimuths = {azimuths}
 
@@ -28,11 +29,12 @@ tolerance_p99 = 2.0
 estimator = "{estimator}"
 """
 
-# name: keys of the material, azimuths, estimator, the table's symmetry (nodes over phi_i)
+# name: encoding, keys of the material, azimuths, estimator, nodes over phi_i and phi_o of the rest's last array
 STACKS = {
-    "anisotropic": ("roughness = [0.2, 0.5]", 8, "unidirectional", 3),
-    "scattering": ("roughness = 0.3\nscattering_per_nm = 0.5\nanisotropy = 0.5", 5, "bidirectional", 1),
-    "multiple": ('roughness = 0.5\nmicrofacet = "multiple"', 5, "unidirectional", 1),
+    "anisotropic": ("dense", "roughness = [0.2, 0.5]", 8, "unidirectional", (3, 8)),
+    "factored": ("factored", 'roughness = [0.2, 0.5]\nabsorption_path = "product"', 8, "unidirectional", (3, 3)),
+    "scattering": ("auto", "roughness = 0.3\nscattering_per_nm = 0.5\nanisotropy = 0.5", 5, "bidirectional", (1, 5)),
+    "multiple": ("auto", 'roughness = 0.5\nmicrofacet = "multiple"', 5, "unidirectional", (1, 5)),
 }
 
 POINTS = "theta_i_deg,phi_i_deg,theta_o_deg,phi_deg\n30,0,40,180\n30,90,40,180\n60,20,10,70\n"
@@ -41,8 +43,9 @@ POINTS = "theta_i_deg,phi_i_deg,theta_o_deg,phi_deg\n30,0,40,180\n30,90,40,180\n
 class Stack(support.CliTest):
     @classmethod
     def prepare(cls):
-        for name, (material, azimuths, estimator, _) in STACKS.items():
-            cls.write(f"{name}.toml", RECIPE.format(material=material, azimuths=azimuths, estimator=estimator))
+        for name, (encoding, material, azimuths, estimator, _) in STACKS.items():
+            cls.write(f"{name}.toml", RECIPE.format(encoding=encoding, material=material, azimuths=azimuths,
+                                                    estimator=estimator))
             cls.write(f"{name}_scene.toml", support.SKY_SPHERE_SCENE.format(
                 name=name, spp=256, max_bounces=1, tangent_rotation_deg=30.0))
             for form in ("exr", "vdb"):
@@ -52,10 +55,11 @@ class Stack(support.CliTest):
         return support.rows_of(self.succeed("eval", source, "--points", "-", *options, stdin=points).out)
 
     def test_info_shows_the_azimuths(self):
-        for name, (_, azimuths, _, phi_i) in STACKS.items():
+        for name, (encoding, _, _, _, azimuths) in STACKS.items():
             info = json.loads(self.succeed("info", f"{name}.exr", "--json").out)
-            nodes = {axis["name"]: len(axis["nodes"]) for axis in info["axes"]}
-            self.assertEqual((nodes["phi_i"], nodes["phi_o"]), (phi_i, azimuths), name)
+            self.assertEqual(info["encoding"], "factored" if encoding == "factored" else "dense", name)
+            nodes = {axis["name"]: len(axis["nodes"]) for axis in info["arrays"][-1]["axes"]}
+            self.assertEqual((nodes["phi_i"], nodes["phi_o"]), azimuths, name)
             self.assertGreater(info["error"]["error_median"], 0, name)
 
     def test_verify_holds_the_table_against_live_walks(self):
@@ -74,11 +78,13 @@ class Stack(support.CliTest):
                 first, rest = float(b["first_r"]), float(b["rest_r"])
                 self.assertAlmostEqual(float(a["first_r"]), first, delta=0.02 * first + 1e-4, msg=name)
                 self.assertAlmostEqual(float(a["rest_r"]), rest, delta=0.2 * rest, msg=name)
-        rows = self.rows("anisotropic.exr", POINTS)
-        self.assertGreater(abs(float(rows[0]["first_r"]) / float(rows[1]["first_r"]) - 1), 0.05)
+        for name in ("anisotropic", "factored"):
+            rows = self.rows(f"{name}.exr", POINTS)
+            self.assertGreater(abs(float(rows[0]["first_r"]) / float(rows[1]["first_r"]) - 1), 0.05)
 
     def test_what_has_no_exact_evaluator_says_so(self):
-        needles = {"anisotropic": "'roughness'", "scattering": "'scattering_per_nm'", "multiple": "'microfacet'"}
+        needles = {"anisotropic": "'roughness'", "factored": "'roughness'", "scattering": "'scattering_per_nm'",
+                   "multiple": "'microfacet'"}
         for name, needle in needles.items():
             for command in (("eval", f"{name}.toml", "--points", "-", "--estimator", "exact"),
                             ("verify", f"{name}.exr", "--truth", "exact")):

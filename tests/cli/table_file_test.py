@@ -1,4 +1,4 @@
-"""`sunbeam info`, other programs that read the files, and damaged files. One bake serves all."""
+"""`sunbeam info`, other programs that read the files, and damaged files. One bake of each encoding serves all."""
 
 import json
 import pathlib
@@ -10,10 +10,17 @@ import unittest
 
 import support
 
-OPTIONS = ("--seed", "7", "--set", "grid.base_ior=[1.4, 1.6]", "--set", "material.albedo=0.02")
-NAMES = ("table.exr", "table.vdb")
-KEYS = ["schema_version", "encoding", "bytes", "axes", "recipe", "recipe_hash", "seed", "samples", "estimator",
-        "spectrum", "color_space", "tool_version", "error"]
+COMMON = ("--seed", "7", "--set", "grid.base_ior=[1.4, 1.6]", "--set", "material.albedo=0.02")
+OPTIONS = {
+    "table": (*COMMON, "--set", "table.encoding=dense"),
+    "factored": (*COMMON, "--set", "table.encoding=factored", "--set", "material.roughness=0.2"),
+}
+FORMS = ("exr", "vdb")
+NAMES = [f"{table}.{form}" for table in OPTIONS for form in FORMS]
+# A smooth film has no film_transmittance.
+ARRAYS = {"table": ["film_reflectance", "remainder", "rest_stderr"], "factored": ["arrival", "exchange"]}
+KEYS = ["schema_version", "encoding", "bytes", "axes", "arrays", "recipe", "recipe_hash", "seed", "samples",
+        "estimator", "spectrum", "color_space", "tool_version", "error"]
 
 
 def setUpModule():
@@ -22,7 +29,7 @@ def setUpModule():
     unittest.addModuleCleanup(shutil.rmtree, FOLDER)
     (FOLDER / "tiny.toml").write_text(support.TINY_RECIPE)
     for name in NAMES:
-        support.succeed_in(FOLDER, "bake", "tiny.toml", "-o", name, *OPTIONS)
+        support.succeed_in(FOLDER, "bake", "tiny.toml", "-o", name, *OPTIONS[name[:-4]])
 
 
 class TableFileTest(support.CliTest):
@@ -45,35 +52,35 @@ class Info(TableFileTest):
         for name in NAMES:
             with self.subTest(table=name):
                 info = self.info(name)
-                self.assertEqual(info["schema_version"], 1)
-                self.assertEqual(info["encoding"], "dense")
+                self.assertEqual(info["schema_version"], 2)
+                self.assertEqual(info["encoding"], "dense" if name.startswith("table") else "factored")
                 self.assertEqual(info["bytes"], (self.folder / name).stat().st_size)
                 self.assertEqual(info["seed"], 7)
                 self.assertGreater(info["samples"], 0)
                 self.assertEqual((info["spectrum"], info["color_space"]), ("rgb3", "rec709"))
-                self.assertRegex(info["estimator"], r"^pfmc-\w+$")
+                self.assertRegex(info["estimator"], r"^pfmc-[\w-]+$")
                 self.assertRegex(info["recipe_hash"], r"^[0-9a-f]{32}$")
                 self.assertEqual(f"sunbeam {info['tool_version']}\n", self.succeed("--version").out)
 
     def test_the_recipe_chooses_the_estimator(self):
-        baked = self.succeed("bake", "tiny.toml", "-o", "bidirectional.exr", "--set", "accuracy.estimator=bidirectional")
+        baked = self.succeed("bake", "tiny.toml", "-o", "bidirectional.exr", "--set", "table.encoding=dense",
+                             "--set", "accuracy.estimator=bidirectional")
         self.assertEqual(baked.err.count("pfmc-bidirectional"), 2)
-        self.assertNotIn("pfmc-unidirectional", baked.err)
+        self.assertIn("points by pfmc-unidirectional", baked.err)  # enough of a truth where nothing scatters
         info = json.loads(self.succeed("info", "bidirectional.exr", "--json").out)
         self.assertEqual(info["estimator"], "pfmc-bidirectional")
         self.succeed("verify", "bidirectional.exr", "--points", "10", "--truth", "bidirectional")
 
-    def test_axes(self):
-        expected = {
-            "film_thickness_nm": ("nm", [200, 400]),
-            "base_ior": ("1", [1.4, 1.6]),
-            "absorption_per_nm": ("1/nm", [0, 0.2]),
-            "cos_theta_i": ("1", 3),
-            "phi_i": ("rad", 1),
-            "cos_theta_o": ("1", 3),
-            "phi_o": ("rad", 1),
-        }
-        axes = self.info("table.exr")["axes"]
+    PARAMETERS = {
+        "film_thickness_nm": ("nm", [200, 400]),
+        "base_ior": ("1", [1.4, 1.6]),
+        "absorption_per_nm": ("1/nm", [0, 0.2]),
+    }
+    DIRECTIONS = {"cos_theta_i": ("1", 3), "phi_i": ("rad", 1), "cos_theta_o": ("1", 3), "phi_o": ("rad", 1)}
+    # Of the grid: the depth is absorption times 2 nm, and the albedo the one of the base.
+    LEADING = {"base_ior": ("1", [1.4, 1.6]), "optical_depth": ("1", [0, 0.4]), "albedo": ("1", [0.02])}
+
+    def check_axes(self, axes, expected):
         self.assertEqual([axis["name"] for axis in axes], list(expected))
         for axis in axes:
             self.assertEqual(list(axis), ["name", "unit", "nodes"])
@@ -85,38 +92,62 @@ class Info(TableFileTest):
                 self.assertEqual(len(axis["nodes"]), nodes)
                 self.assertEqual(axis["nodes"], sorted(axis["nodes"]))
 
+    def test_axes(self):
+        self.check_axes(self.info("table.exr")["axes"], {**self.PARAMETERS, **self.DIRECTIONS})
+        self.check_axes(self.info("factored.exr")["axes"], self.PARAMETERS)
+
+    def test_arrays(self):
+        for table, names in ARRAYS.items():
+            arrays = self.info(f"{table}.exr")["arrays"]
+            self.assertEqual([array["name"] for array in arrays], names)
+            precisions = {"float", "half"} if table == "table" else {"half"}
+            self.assertEqual({array["precision"] for array in arrays}, precisions)
+        self.assertEqual(self.info("table.exr")["arrays"][1]["axes"], self.info("table.exr")["axes"])
+        # 2 n1 d / lambda of 400 nm at 475 nm and 200 nm at 650 nm, and 3 nodes a fringe between them.
+        orders = self.info("factored.exr")["arrays"][1]["axes"][3]["nodes"]
+        self.assertAlmostEqual(orders[-1], 2 * 1.56 * 400 / 475, places=9)
+        self.assertAlmostEqual(orders[0], 2 * 1.56 * 200 / 650, places=9)
+        self.check_axes(self.info("factored.exr")["arrays"][1]["axes"],
+                        {**self.LEADING, "fringe_order": ("1", len(orders)), **self.DIRECTIONS})
+
     def test_both_forms_agree_in_all_but_bytes(self):
-        exr, vdb = (self.info(name) for name in NAMES)
-        self.assertNotEqual(exr.pop("bytes"), vdb.pop("bytes"))
-        self.assertEqual(exr, vdb)
+        for table in OPTIONS:
+            exr, vdb = (self.info(f"{table}.{form}") for form in FORMS)
+            self.assertNotEqual(exr.pop("bytes"), vdb.pop("bytes"))
+            self.assertEqual(exr, vdb)
 
     def test_both_forms_evaluate_to_the_same_digits(self):
         points = "theta_i_deg,theta_o_deg,phi_deg,film_thickness_nm\n0,0,0,200\n30,40,180,311\n85,89,20,400\n"
         for quantity in ("brdf", "albedo", "film"):
-            exr, vdb = (self.succeed("eval", name, "--points", "-", "--quantity", quantity, stdin=points).out
-                        for name in NAMES)
-            self.assertEqual(exr, vdb)
+            for table in OPTIONS:
+                exr, vdb = (self.succeed("eval", f"{table}.{form}", "--points", "-", "--quantity", quantity,
+                                         stdin=points).out for form in FORMS)
+                self.assertEqual(exr, vdb)
 
     def test_the_recipe_inside_gives_the_table_again(self):
-        info = self.info("table.exr")
-        self.write("inside.toml", info["recipe"])
-        self.succeed("bake", "inside.toml", "-o", "again.exr", "--seed", str(info["seed"]))
-        self.assertEqual((self.folder / "again.exr").read_bytes(), (self.folder / "table.exr").read_bytes())
+        for table in OPTIONS:
+            info = self.info(f"{table}.exr")
+            self.write("inside.toml", info["recipe"])
+            self.succeed("bake", "inside.toml", "-o", "again.exr", "--seed", str(info["seed"]))
+            self.assertEqual((self.folder / "again.exr").read_bytes(), (self.folder / f"{table}.exr").read_bytes())
 
     def test_the_error_inside_is_that_of_verify(self):
-        self.succeed("verify", "table.exr", "--points", "250", "--json", "report.json")
-        report = json.loads((self.folder / "report.json").read_text())
-        inside = self.info("table.exr")["error"]
-        self.assertEqual({f"error_{k}" if k in ("median", "p95", "p99", "max") else k: v for k, v in inside.items()},
-                         report)
+        for table in OPTIONS:
+            self.succeed("verify", f"{table}.exr", "--points", "250", "--json", "report.json")
+            report = json.loads((self.folder / "report.json").read_text())
+            self.assertEqual(self.info(f"{table}.exr")["error"], report)
 
     def test_text_shows_the_same_facts(self):
-        text = self.succeed("info", "table.exr").out
-        info = self.info("table.exr")
-        for fact in (info["recipe_hash"], info["estimator"], info["recipe"], str(info["bytes"])):
-            self.assertIn(fact, text)
-        for axis in info["axes"]:
-            self.assertRegex(text, rf"(?m)^axis +{axis['name']} +{len(axis['nodes'])} nodes")
+        for name in NAMES:
+            text = self.succeed("info", name).out
+            info = self.info(name)
+            for fact in (info["recipe_hash"], info["estimator"], info["recipe"], str(info["bytes"])):
+                self.assertIn(fact, text)
+            for axis in info["axes"]:
+                self.assertRegex(text, rf"(?m)^axis +{axis['name']} +{len(axis['nodes'])} nodes")
+            for array in info["arrays"]:
+                axes = " ".join(f"{axis['name']} {len(axis['nodes'])}" for axis in array["axes"])
+                self.assertRegex(text, rf"(?m)^array +{array['name']} +{array['precision']}: {axes}$")
 
     def test_an_extension_in_capitals_is_the_same_form(self):
         shutil.copy(self.folder / "table.exr", self.folder / "CAPITAL.EXR")
@@ -146,8 +177,6 @@ class InfoOfRecipe(support.CliTest):
 class OtherPrograms(TableFileTest):
     """What other programs see of the files. A missing program fails the test."""
 
-    ARRAYS = {"film_reflectance", "remainder", "rest_stderr"}  # a smooth film has no film_transmittance
-
     def run_tool(self, package, *command):
         if shutil.which(command[0]) is None:
             self.fail(f"{command[0]} is not installed: apt install {package}")
@@ -156,35 +185,39 @@ class OtherPrograms(TableFileTest):
         return result.out
 
     def test_exrheader(self):
-        text = self.run_tool("openexr", "exrheader", "table.exr")
-        self.assertEqual(set(re.findall(r'(?m)^name \(type string\): "(\w+)"', text)), self.ARRAYS)
-        info = self.info("table.exr")
-        self.assertIn(f'sunbeam.recipe_hash (type string): "{info["recipe_hash"]}"', text)
-        self.assertIn('sunbeam.schema_version (type string): "1"', text)
-        self.assertIn('sunbeam.axis.0.name (type string): "film_thickness_nm"', text)
+        for table, first_axis in (("table", "film_thickness_nm"), ("factored", "base_ior")):
+            text = self.run_tool("openexr", "exrheader", f"{table}.exr")
+            self.assertEqual(re.findall(r'(?m)^name \(type string\): "(\w+)"', text), ARRAYS[table])
+            info = self.info(f"{table}.exr")
+            self.assertIn(f'sunbeam.recipe_hash (type string): "{info["recipe_hash"]}"', text)
+            self.assertIn('sunbeam.schema_version (type string): "2"', text)
+            self.assertIn(f'sunbeam.axis.0.name (type string): "{first_axis}"', text)
 
     def test_exrinfo(self):
-        text = self.run_tool("openexr", "exrinfo", "-v", "table.exr")
-        for name in self.ARRAYS:
-            self.assertRegex(text, rf"part \d+: {name}\b")
-        self.assertRegex(text, r"'G': half")
-        self.assertRegex(text, r"'G': float")
+        for table, channels in (("table", ("'G': half", "'G': float")), ("factored", ("'Y': half",))):
+            text = self.run_tool("openexr", "exrinfo", "-v", f"{table}.exr")
+            for name in ARRAYS[table]:
+                self.assertRegex(text, rf"part \d+: {name}\b")
+            for channel in channels:
+                self.assertIn(channel, text)
 
     def test_exrmultipart_splits_the_file(self):
         """Reads every pixel and writes it anew."""
-        self.run_tool("openexr", "exrmultipart", "-separate", "-i", "table.exr", "-o", "part")
-        parts = sorted(self.folder.glob("part*.exr"))
-        self.assertEqual(len(parts), len(self.ARRAYS))
-        for part in parts:
-            self.run_tool("openexr", "exrheader", part.name)
+        for table, arrays in ARRAYS.items():
+            self.run_tool("openexr", "exrmultipart", "-separate", "-i", f"{table}.exr", "-o", f"part_{table}")
+            parts = sorted(self.folder.glob(f"part_{table}*.exr"))
+            self.assertEqual(len(parts), len(arrays))
+            for part in parts:
+                self.run_tool("openexr", "exrheader", part.name)
 
     def test_vdb_print(self):
-        text = self.run_tool("libopenvdb-tools", "vdb_print", "-l", "table.vdb")
-        for name in self.ARRAYS:
-            self.assertRegex(text, rf"(?m)^\W*Name: {name}$")
-        info = self.info("table.vdb")
-        self.assertIn(f'sunbeam.recipe_hash: {info["recipe_hash"]}', text)
-        self.assertIn("vec3s", self.run_tool("libopenvdb-tools", "vdb_print", "table.vdb"))
+        for table, kind in (("table", "vec3s"), ("factored", "float")):
+            text = self.run_tool("libopenvdb-tools", "vdb_print", "-l", f"{table}.vdb")
+            for name in ARRAYS[table]:
+                self.assertRegex(text, rf"(?m)^\W*Name: {name}$")
+            info = self.info(f"{table}.vdb")
+            self.assertIn(f'sunbeam.recipe_hash: {info["recipe_hash"]}', text)
+            self.assertIn(kind, self.run_tool("libopenvdb-tools", "vdb_print", f"{table}.vdb"))
 
 
 class Damage(TableFileTest):

@@ -289,25 +289,27 @@ TEST(TableReader, ForeignExr) {
   EXPECT_THAT(refusal(exr, read_file(picture), kName),
               AllOf(StartsWith(kName), HasSubstr("not a Sunbeam table")));
 
-  // One that claims to be a table, without colours.
-  const std::string grey = folder.file("grey.exr");
-  {
-    Imf::Header header(4, 3);
-    header.insert("sunbeam.schema_version", Imf::StringAttribute("1"));
-    header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
-    std::vector<float> pixels(12, 0.5f);
-    Imf::FrameBuffer buffer;
-    buffer.insert("Z", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels.data()), 4, 16));
-    Imf::OutputFile file(grey.c_str(), header);
-    file.setFrameBuffer(buffer);
-    file.writePixels(3);
+  // Ones that claim to be a table, without axes.
+  for (const char* channel : {"Z", "Y"}) {
+    const std::string grey = folder.file("grey.exr");
+    {
+      Imf::Header header(4, 3);
+      header.insert("sunbeam.schema_version", Imf::StringAttribute("2"));
+      header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+      std::vector<float> pixels(12, 0.5f);
+      Imf::FrameBuffer buffer;
+      buffer.insert(channel, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels.data()), 4, 16));
+      Imf::OutputFile file(grey.c_str(), header);
+      file.setFrameBuffer(buffer);
+      file.writePixels(3);
+    }
+    EXPECT_THAT(refusal(exr, read_file(grey), kName), AllOf(StartsWith(kName), HasSubstr("no sunbeam.axis")));
   }
-  EXPECT_THAT(refusal(exr, read_file(grey), kName), AllOf(StartsWith(kName), HasSubstr("no sunbeam.axis")));
 }
 
 std::string vdb_bytes(const openvdb::GridBase::Ptr& grid, bool claims_to_be_a_table) {
   openvdb::MetaMap metadata;
-  if (claims_to_be_a_table) metadata.insertMeta("sunbeam.schema_version", openvdb::StringMetadata("1"));
+  if (claims_to_be_a_table) metadata.insertMeta("sunbeam.schema_version", openvdb::StringMetadata("2"));
   std::ostringstream out;
   openvdb::io::Stream(out).write(openvdb::GridPtrVec{grid}, metadata);
   return out.str();
@@ -318,13 +320,17 @@ TEST(TableReader, ForeignVdb) {
   const auto smoke = openvdb::FloatGrid::create(0);
   smoke->setName("density");
   smoke->tree().setValue(openvdb::Coord(1, 2, 3), 0.5f);
+  const auto doubles = openvdb::DoubleGrid::create(0);
+  doubles->setName("heat");
   const auto wind = openvdb::Vec3SGrid::create(openvdb::Vec3f(0));
   wind->setName("velocity");
   const Form vdb = forms()[1];
   EXPECT_THAT(refusal(vdb, vdb_bytes(smoke, false), kName),
               AllOf(StartsWith(kName), HasSubstr("not a Sunbeam table")));
   EXPECT_THAT(refusal(vdb, vdb_bytes(smoke, true), kName),
-              AllOf(StartsWith(kName), HasSubstr("'density'"), HasSubstr("precision")));
+              AllOf(StartsWith(kName), HasSubstr("'density'"), HasSubstr("sunbeam.precision")));
+  EXPECT_THAT(refusal(vdb, vdb_bytes(doubles, true), kName),
+              AllOf(StartsWith(kName), HasSubstr("'heat'"), HasSubstr("vec3s or float")));
   EXPECT_THAT(refusal(vdb, vdb_bytes(wind, true), kName), AllOf(StartsWith(kName), HasSubstr("'velocity'")));
 }
 

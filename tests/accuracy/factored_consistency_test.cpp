@@ -1,0 +1,96 @@
+// eval, sample, pdf and albedo of factored tables agree with each other and with what is known exactly.
+#include "tests/accuracy/factored_support.h"
+#include "tests/support/bsdf_checks.h"
+
+namespace sunbeam {
+namespace {
+
+class FactoredConsistency : public ::testing::TestWithParam<test::FilmRow> {
+ protected:
+  // Between all nodes.
+  TableBsdf bsdf() const {
+    return TableBsdf(test::lower_half(GetParam(), "full"), {433, 1.15, 0.21}, OutsideGrid::refuse);
+  }
+};
+
+std::string name_of(const ::testing::TestParamInfo<test::FilmRow>& info) { return info.param.name(); }
+
+const Vec3 kOblique = spherical_direction(0.9, 0.4);
+const Vec3 kSteep = spherical_direction(0.3, 2.5);
+const Vec3 kGrazing = spherical_direction(1.4, 5);
+
+// 14 rows x 3 directions, false alarm 1e-3 in all.
+TEST_P(FactoredConsistency, SamplesFollowThePdf) {
+  const TableBsdf table = bsdf();
+  for (const Vec3& wo : {kOblique, kSteep, kGrazing}) {
+    const auto result = test::chi_square_of_sampling(table, wo, {.samples = 100000, .pdf_samples = 16}, 1);
+    EXPECT_GT(result.p_value, test::sidak(1e-3, 42)) << wo.z;
+    EXPECT_GT(result.degrees, 50) << wo.z;
+  }
+}
+
+// Sampled against integrated albedo, the Dirac included: 14 rows x 2 directions at 4.5 standard errors, 2e-4
+// in all. Quadrature is good to 1e-4.
+TEST_P(FactoredConsistency, SampledAlbedoIsTheAlbedo) {
+  const TableBsdf table = bsdf();
+  for (const Vec3& wo : {kOblique, kSteep}) {
+    const auto sampled = test::sample_totals(table, wo, 100000, 2).albedo.grey;
+    const double albedo = mean(table.albedo(wo));
+    EXPECT_LT(sampled.std_error(), 3e-3 * albedo) << wo.z;
+    EXPECT_LT(test::deviation(sampled.mean(), sampled.std_error(), albedo, 0, 1e-4 * albedo), 4.5) << wo.z;
+  }
+}
+
+// Throughput is f cos / pdf of the whole; a Dirac's its weight over what the rest of the density leaves.
+TEST_P(FactoredConsistency, ThroughputIsEvalOverPdf) {
+  const TableBsdf table = bsdf();
+  Rng rng(3, 0);
+  int seen = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const Vec3 wo = test::uniform_hemisphere({rng.uniform(), rng.uniform()});
+    const auto s = table.sample(wo, rng);
+    if (!s || s->is_dirac) continue;
+    ++seen;
+    const Rgb expected = table.eval(wo, s->wi, rng) * (s->wi.z / table.pdf(wo, s->wi, rng));
+    for (int c = 0; c < 3; ++c)
+      ASSERT_NEAR(s->throughput[c], expected[c], 1e-5 * std::abs(expected[c])) << wo.z << ' ' << s->wi.z;
+  }
+  EXPECT_GT(seen, 2000);
+}
+
+// Two floats are multiplied in another order: 1e-5 is a hundred roundings.
+TEST_P(FactoredConsistency, IsReciprocal) {
+  const TableBsdf table = bsdf();
+  Rng rng(4, 0);
+  for (int k = 0; k < 20000; ++k) {
+    const Vec3 a = test::uniform_hemisphere({rng.uniform(), rng.uniform()});
+    const Vec3 b = test::uniform_hemisphere({rng.uniform(), rng.uniform()});
+    const Rgb ab = table.eval(a, b, rng), ba = table.eval(b, a, rng);
+    for (int c = 0; c < 3; ++c)
+      ASSERT_NEAR(ab[c], ba[c], 1e-5 * std::abs(ab[c])) << a.z << ' ' << b.z << ' ' << GetParam().name();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, FactoredConsistency, ::testing::ValuesIn(test::all_rows()), name_of);
+
+// A clear pigment over a white base under a film that absorbs nothing returns all light: albedo 1 in every
+// direction, for a smooth film, which loses nothing between its facets. 1e-3 is interpolation.
+TEST(FactoredFurnace, SmoothClearWhite) {
+  for (const auto& [row, spectrum] : test::in_both_spectra(test::plain_rows())) {
+    if (!row.is_smooth()) continue;
+    const Table& table = test::factored(row, spectrum, {"material.albedo=1", "grid.absorption_per_nm=[0]"});
+    for (const double thickness : {0.0, 123.0, 500.0, 1499.0})
+      for (const double ior : {1.0, 1.03, 1.37, 1.99}) {
+        const TableBsdf bsdf(table, {thickness, ior, 0}, OutsideGrid::refuse);
+        for (const double cosine : {1.0, 0.7, 0.3, 0.1}) {
+          const Rgb albedo = bsdf.albedo(direction_from_cosine(cosine, 0));
+          for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(albedo[c], 1, 1e-3)
+                << row.name() << ' ' << spectrum << ' ' << thickness << ' ' << ior << ' ' << cosine;
+        }
+      }
+  }
+}
+
+}  // namespace
+}  // namespace sunbeam

@@ -1,0 +1,57 @@
+"""`[table] encoding`: auto takes the smallest table that meets the tolerances and says so."""
+
+import json
+import unittest
+
+import support
+
+SCATTERING = ("--set", "material.absorption_path=sum", "--set", "material.scattering_per_nm=0.2",
+              "--set", "table.azimuths=3")
+MULTIPLE = ("--set", "material.roughness=0.3", "--set", 'material.microfacet="multiple"', "--set", "table.azimuths=3")
+
+
+class Encoding(support.CliTest):
+    def bake(self, *options):
+        """The result of a bake, and the encoding inside the table."""
+        result = self.succeed("bake", "tiny.toml", "-o", "table.exr", *options)
+        return result, json.loads(self.succeed("info", "table.exr", "--json").out)["encoding"]
+
+    def test_auto_takes_factored_within_the_tolerances(self):
+        result, encoding = self.bake()
+        self.assertEqual(encoding, "factored")
+        self.assertIn("tiny.toml: factored, ", result.err)
+        self.assertIn("encoding auto: factored is the smallest that meets the tolerances (median 0.3, p99 1)", result.err)
+        self.assertNotIn("tiny.toml: dense, ", result.err)
+
+    def test_auto_falls_back_to_dense(self):
+        result, encoding = self.bake("--set", "accuracy.tolerance_median=1e-6")
+        self.assertEqual(encoding, "dense")
+        first = result.err.index("encoding auto: factored misses the tolerances (median 1e-06, p99 1)")
+        self.assertLess(result.err.index("tiny.toml: factored, "), first)
+        self.assertGreater(result.err.index("tiny.toml: dense, "), first)
+        self.assertIn("encoding auto: dense misses the tolerances", result.err)
+
+    def test_what_is_asked_for_is_taken_without_a_word(self):
+        for encoding in ("dense", "factored"):
+            result, found = self.bake("--set", f"table.encoding={encoding}", "--set", "accuracy.tolerance_median=1e-6")
+            self.assertEqual(found, encoding)
+            self.assertNotIn("encoding auto", result.err)
+
+    def test_auto_of_what_has_no_factors_is_dense(self):
+        for options in (SCATTERING, MULTIPLE):
+            result, encoding = self.bake(*options)
+            self.assertEqual(encoding, "dense")
+            self.assertNotIn("encoding auto", result.err)
+
+    def test_factored_is_refused_where_there_are_no_factors(self):
+        for options, cause in ((SCATTERING, "scattering_per_nm"), (MULTIPLE, "microfacet")):
+            self.refuse("bake", "tiny.toml", "-o", "none.exr", "--set", "table.encoding=factored", *options,
+                        naming=["table.encoding", "factored", cause, '"auto", "dense"'])
+
+    def test_unknown_encoding(self):
+        self.refuse("bake", "tiny.toml", "-o", "none.exr", "--set", "table.encoding=sparse",
+                    naming=["table.encoding", "sparse", "auto", "dense", "factored"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,261 @@
+// Readers refuse a factored table that is not sound, naming the file and the defect, and survive damage.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/table/factored_tables.h"
+
+namespace sunbeam {
+namespace {
+
+using test::Form;
+using test::forms;
+using test::refusal;
+using test::small_factored_table;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+constexpr const char* kName = "folder/some.table";
+
+struct Defect {
+  std::string description;
+  std::function<void(Table&)> make;
+  std::vector<std::string> named;  // what the message must say
+};
+
+NdArray rebuilt(const NdArray& array, std::vector<Axis> axes, std::size_t channels = 1) {
+  NdArray result(array.name(), std::move(axes), array.precision(), channels);
+  test::fill_randomly(result, 0, 1, 9);
+  return result;
+}
+
+using ArrayOf = NdArray Factors::*;
+
+std::function<void(Table&)> under_another_name(ArrayOf array) {
+  return [=](Table& table) {
+    const NdArray& old = table.factors.*array;
+    table.factors.*array = NdArray("stray", old.axes(), old.precision(), 1);
+  };
+}
+
+std::function<void(Table&)> with_axis(ArrayOf array, std::size_t k,
+                                      const std::function<void(Axis&)>& change) {
+  return [=](Table& table) {
+    auto axes = (table.factors.*array).axes();
+    change(axes[k]);
+    table.factors.*array = rebuilt(table.factors.*array, axes);
+  };
+}
+
+std::function<void(Table&)> with_nodes(ArrayOf array, std::size_t k, const std::vector<double>& nodes) {
+  return with_axis(array, k, [=](Axis& axis) { axis.nodes = nodes, axis.power = 1; });
+}
+
+std::function<void(Table&)> with_name(ArrayOf array, std::size_t k, const std::string& name) {
+  return with_axis(array, k, [=](Axis& axis) { axis.name = name; });
+}
+
+std::function<void(Table&)> without_last_axis(ArrayOf array) {
+  return [=](Table& table) {
+    auto axes = (table.factors.*array).axes();
+    axes.pop_back();
+    table.factors.*array = rebuilt(table.factors.*array, axes);
+  };
+}
+
+std::function<void(Table&)> in_colours(ArrayOf array) {
+  return [=](Table& table) {
+    table.factors.*array = rebuilt(table.factors.*array, (table.factors.*array).axes(), 3);
+  };
+}
+
+std::function<void(Table&)> with_grid(std::size_t k, const std::function<void(Axis&)>& change) {
+  return [=](Table& table) { change(table.factors.grid[k]); };
+}
+
+std::function<void(Table&)> with_wavelengths(const std::function<void(Wavelengths&)>& change) {
+  return [=](Table& table) { change(table.factors.wavelengths); };
+}
+
+void expect_named(const Table& sound, const std::vector<Defect>& defects) {
+  for (const Form& form : forms())
+    for (const Defect& defect : defects) {
+      Table table = sound;
+      ASSERT_EQ(refusal(form, form.bytes(table), kName), "accepted");
+      defect.make(table);
+      const std::string message = refusal(form, form.bytes(table), kName);
+      EXPECT_THAT(message, StartsWith(kName)) << form.name << ", " << defect.description;
+      for (const std::string& part : defect.named)
+        EXPECT_THAT(message, HasSubstr(part)) << form.name << ", " << defect.description;
+    }
+}
+
+TEST(FactoredReader, NamesDefectsOfTheArrays) {
+  expect_named(
+      small_factored_table(),
+      {{"no arrival", under_another_name(&Factors::arrival), {"'arrival' is missing", "returned, stray"}},
+       {"no returned", under_another_name(&Factors::returned), {"'returned' is missing", "arrival, stray"}},
+       {"renamed axis", with_name(&Factors::arrival, 2, "phase"), {"'arrival'", "'phase'", "'fringe_order'"}},
+       {"renamed axis of returned",
+        with_name(&Factors::returned, 1, "depth"),
+        {"'returned'", "axis 1", "'depth'", "'optical_depth'"}},
+       {"an axis too few", without_last_axis(&Factors::arrival), {"'arrival' has 4 axes", "expected 5"}},
+       {"too few of returned",
+        without_last_axis(&Factors::returned),
+        {"'returned' has 2 axes", "expected 3"}},
+       {"colours", in_colours(&Factors::arrival), {"'arrival' holds colours", "expected numbers"}},
+       {"colours in returned",
+        in_colours(&Factors::returned),
+        {"'returned' holds colours", "expected numbers"}},
+       {"more comes back than left",
+        [](Table& t) { t.factors.returned.set(3, Rgb(1.5)); },
+        {"'returned'", "0 to 1"}},
+       {"less than nothing comes back",
+        [](Table& t) { t.factors.returned.set(3, Rgb(-0.01)); },
+        {"'returned'", "0 to 1"}},
+       {"base IOR below 1", with_nodes(&Factors::arrival, 0, {0.9, 1.5}), {"'base_ior'", "1 to 5"}},
+       {"base IOR of returned", with_nodes(&Factors::returned, 0, {1.4, 7}), {"'base_ior'", "1 to 5"}},
+       {"depth below 0", with_nodes(&Factors::arrival, 1, {-1, 1}), {"'optical_depth'", "0 to"}},
+       {"depth of returned", with_nodes(&Factors::returned, 1, {-1, 1}), {"'optical_depth'", "0 to"}},
+       {"horizon", with_nodes(&Factors::arrival, 3, {0, 1}), {"'cos_theta'", "to 1"}},
+       {"cosine above 1", with_nodes(&Factors::arrival, 3, {0.5, 1.01}), {"'cos_theta'", "to 1"}},
+       {"azimuth of an isotropic film",
+        with_nodes(&Factors::arrival, 4, {0, 1}),
+        {"'phi' has 2", "isotropic"}}});
+}
+
+TEST(FactoredReader, NamesDefectsOfExchange) {
+  expect_named(
+      small_factored_table(0.3, AbsorptionPath::product),
+      {{"no exchange", under_another_name(&Factors::exchange), {"'exchange' is missing", "arrival, stray"}},
+       {"renamed axis", with_name(&Factors::exchange, 2, "kd"), {"'exchange'", "'kd'", "'albedo'"}},
+       {"an axis too few", without_last_axis(&Factors::exchange), {"'exchange' has 7 axes", "expected 8"}},
+       {"colours", in_colours(&Factors::exchange), {"'exchange' holds colours", "expected numbers"}},
+       {"horizon", with_nodes(&Factors::exchange, 6, {0, 1}), {"'cos_theta_o'", "to 1"}},
+       {"azimuth of an isotropic film", with_nodes(&Factors::exchange, 5, {0, 1}), {"'phi_i' has 2"}},
+       {"wi and wo at other cosines",
+        with_nodes(&Factors::exchange, 6, {0.5, 1}),
+        {"'exchange'", "'cos_theta_i'", "'cos_theta_o'"}}});
+}
+
+TEST(FactoredReader, NamesDefectsOfAnAnisotropicTable) {
+  const Table table = small_factored_table({0.3, 0.1}, AbsorptionPath::product);
+  expect_named(
+      table, {{"one azimuth", with_nodes(&Factors::arrival, 4, {0}), {"'phi' runs from 0 to 0", "1.57"}},
+              {"beyond the quadrant", with_nodes(&Factors::exchange, 7, {0, kPi}), {"'phi_o' runs", "3.14"}},
+              {"isotropic film", [](Table& t) { t.material.roughness = 0.1; }, {"symmetry is anisotropic"}}});
+}
+
+TEST(FactoredReader, NamesDefectsOfTheGrid) {
+  expect_named(small_factored_table(),
+               {{"an axis too few", [](Table& t) { t.factors.grid.pop_back(); }, {"'grid.*'", "3 axes"}},
+                {"another parameter", with_grid(1, [](Axis& a) { a.name = "n2"; }), {"'n2'", "'base_ior'"}},
+                {"thickness below 0",
+                 with_grid(0,
+                           [](Axis& a) {
+                             a.nodes = {-1, 2};
+                           }),
+                 {"'film_thickness_nm'", "0 to"}},
+                {"base IOR above 5",
+                 with_grid(1,
+                           [](Axis& a) {
+                             a.nodes = {1, 6};
+                           }),
+                 {"'base_ior'", "1 to 5"}},
+                {"absorption too large",
+                 with_grid(2,
+                           [](Axis& a) {
+                             a.nodes = {0, 1e9};
+                           }),
+                 {"'absorption_per_nm'"}},
+                {"falling nodes",
+                 with_grid(0,
+                           [](Axis& a) {
+                             a.nodes = {2, 1};
+                           }),
+                 {"do not increase"}}});
+}
+
+TEST(FactoredReader, NamesDefectsOfTheWavelengths) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  expect_named(
+      small_factored_table(),
+      {{"an albedo too few", with_wavelengths([](Wavelengths& w) { w.albedo.pop_back(); }), {"'spectral.*'"}},
+       {"a weight too many",
+        with_wavelengths([](Wavelengths& w) { w.weight.push_back({}); }),
+        {"'spectral.*'"}},
+       {"none", with_wavelengths([](Wavelengths& w) { w = {}; }), {"'spectral.nm'"}},
+       {"too many",
+        with_wavelengths([](Wavelengths& w) {
+          w = {std::vector(65, 500.0), std::vector(65, 0.5), std::vector(65, 1.0),
+               std::vector(65, Rgb(0.01))};
+        }),
+        {"more than 64"}},
+       {"a wavelength of nothing",
+        with_wavelengths([](Wavelengths& w) { w.nm[2] = 0; }),
+        {"'spectral.nm'", "1 nm"}},
+       {"an albedo above 1",
+        with_wavelengths([](Wavelengths& w) { w.albedo[1] = 1.5; }),
+        {"'spectral.albedo'"}},
+       {"a pigment that shines",
+        with_wavelengths([](Wavelengths& w) { w.absorption[0] = -1; }),
+        {"'spectral.absorption'", "negative"}},
+       {"no number",
+        with_wavelengths([=](Wavelengths& w) { w.weight[0].g = kNan; }),
+        {"'spectral.weight_g'"}}});
+}
+
+TEST(FactoredReader, NamesTheEncoding) {
+  expect_named(
+      small_factored_table(),
+      {{"unknown", [](Table& t) { t.info["encoding"] = "sparse"; }, {"'sparse'", "dense, factored"}},
+       {"the other one", [](Table& t) { t.info["encoding"] = "dense"; }, {"'film_reflectance' is missing"}},
+       {"none", [](Table& t) { t.info.erase("encoding"); }, {"'encoding' is missing"}}});
+}
+
+// The writer's own check comes first: a NaN in a file would change its hash as well.
+TEST(FactoredWriter, ValuesThatAreNotFiniteAreRefused) {
+  for (const Form& form : forms())
+    for (const auto array : {&Factors::arrival, &Factors::returned}) {
+      Table table = small_factored_table();
+      (table.factors.*array).values()[5] = std::numeric_limits<float>::infinity();
+      EXPECT_THAT([&] { form.bytes(table); },
+                  ::testing::ThrowsMessage<Error>(
+                      ::testing::AllOf(HasSubstr((table.factors.*array).name()), HasSubstr("not finite"))));
+    }
+}
+
+// Every outcome but a crash or a wrong table: an Error that names the file, or the very table.
+TEST(FactoredReader, SurvivesFlippedBits) {
+  const Table tables[] = {small_factored_table(), small_factored_table({0.3, 0.1}, AbsorptionPath::product)};
+  for (const Table& table : tables)
+    for (const Form& form : forms()) {
+      const std::string bytes = form.bytes(table);
+      Rng rng(1, static_cast<std::uint64_t>(&table - tables));
+      for (int k = 0; k < 300; ++k) {
+        const auto at = static_cast<std::size_t>(rng.uniform() * static_cast<double>(bytes.size()));
+        std::string damaged = bytes;
+        damaged[at] = static_cast<char>(damaged[at] ^ (1 << (rng.next() % 8)));
+        try {
+          EXPECT_TRUE(form.parse(damaged, kName) == table) << form.name << ", byte " << at;
+        } catch (const Error& error) {
+          EXPECT_THAT(error.what(), StartsWith(kName)) << form.name << ", byte " << at;
+        }
+      }
+    }
+}
+
+TEST(FactoredReader, SurvivesTruncation) {
+  const Table table = small_factored_table();
+  for (const Form& form : forms()) {
+    const std::string bytes = form.bytes(table);
+    for (std::size_t k = 0; k < 50; ++k)
+      EXPECT_THAT(refusal(form, bytes.substr(0, bytes.size() * k / 50), kName), StartsWith(kName))
+          << form.name;
+    EXPECT_THAT(refusal(form, bytes.substr(0, bytes.size() - 1), kName), StartsWith(kName)) << form.name;
+  }
+}
+
+}  // namespace
+}  // namespace sunbeam

@@ -114,10 +114,12 @@ Axis orders_axis(const Recipe& recipe, const Wavelengths& w, double least_cosine
   const double low = fringe_order(recipe.material, least_cosine) * recipe.grid[0].low() / *longest;
   const double high = fringe_order(recipe.material, 1) * recipe.grid[0].high() / *shortest;
   Axis axis{"fringe_order", "1", {low}};
-  if (high > low)
-    axis.nodes = spaced_nodes(
-        low, high,
-        std::max(kLeastFringeNodes, static_cast<std::size_t>(std::ceil((high - low) * per_fringe)) + 1));
+  if (high > low) {
+    const auto count =
+        std::max(kLeastFringeNodes, static_cast<std::size_t>(std::ceil((high - low) * per_fringe)) + 1);
+    const double step = (high - low) / static_cast<double>(count - 1);
+    axis.nodes = spaced_nodes(low, high + step, count + 1);  // one beyond: a cubic is best inside its nodes
+  }
   return cubic(axis);
 }
 

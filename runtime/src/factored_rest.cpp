@@ -3,8 +3,8 @@
 namespace sunbeam {
 namespace {
 
-// Gauss-Legendre over cosines: 1e-4 of what passes a film of some ten fringe orders.
-constexpr int kPanels = 5;
+// Gauss-Legendre over cosines: 1e-4 of what passes a film of a dozen fringe orders.
+constexpr int kPanels = 12;
 constexpr std::array kNode = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
 constexpr std::array kWeight = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
                                 0.1739274225687269};

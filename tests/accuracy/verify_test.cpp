@@ -228,8 +228,8 @@ TEST(Verify, FigureNames) {
                                      "dirac_error_p99", "energy_max", "reciprocity_max", "points"));
 }
 
-// The shipped small table states its own error: measured again, by the same code and seed, it is the same; but
-// for a rare direction drawn otherwise where instruction sets round the film's reflectance differently.
+// The shipped small table states its own error: measured again, by the same code and seed, it is the same;
+// but for a rare direction drawn otherwise where instruction sets round the film's reflectance differently.
 TEST(Golden, PreviewStatesItsError) {
   const std::string path = std::string(SUNBEAM_SOURCE_DIR) + "/tables/golden/preview.exr";
   ASSERT_TRUE(std::filesystem::exists(path))

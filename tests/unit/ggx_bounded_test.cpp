@@ -14,7 +14,7 @@ class BoundedMirror final : public Bsdf {
   explicit BoundedMirror(const Roughness& roughness) : ggx_(roughness) {}
   Rgb eval(const Vec3&, const Vec3&, Rng&) const override { return {}; }
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override {
-    const Vec3 wi = reflect(wo, ggx_.sample_visible_bounded(wo, {rng.uniform(), rng.uniform()}));
+    const Vec3 wi = ggx_.sample_mirrored(wo, {rng.uniform(), rng.uniform()});
     if (wi.z <= 0) return {};
     return BsdfSample{wi, Rgb(1), false};
   }
@@ -71,7 +71,7 @@ TEST(GgxBounded, LosesNoMoreThanVisibleNormals) {
       for (int i = 0; i < 100; ++i)
         for (int j = 0; j < 100; ++j) {
           const Point2 u{(i + 0.5) / 100, (j + 0.5) / 100};
-          lost_bounded += reflect(wo, ggx.sample_visible_bounded(wo, u)).z <= 0;
+          lost_bounded += ggx.sample_mirrored(wo, u).z <= 0;
           lost_visible += reflect(wo, ggx.sample_visible(wo, u)).z <= 0;
         }
     }

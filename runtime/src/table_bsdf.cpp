@@ -322,6 +322,10 @@ TableBsdf::TableBsdf(const Table& table, const Parameters& parameters, OutsideGr
     : bound_(std::make_shared<BoundTable>(table,
                                           checked(table, parameters, outside).applied_to(table.material))) {}
 
+TableBsdf Table::bind(const Parameters& parameters, OutsideGrid outside) const {
+  return TableBsdf(*this, parameters, outside);
+}
+
 const Material& TableBsdf::material() const { return bound_->material; }
 
 Rgb TableBsdf::film_reflectance(double cosine) const { return bound_->film_reflectance(cosine); }

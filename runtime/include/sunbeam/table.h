@@ -68,6 +68,11 @@ enum class FrameKind { closed, none };
 
 constexpr const char* name_of(FrameKind frame) { return frame == FrameKind::closed ? "closed" : "none"; }
 
+class TableBsdf;
+
+// What becomes of parameters beyond those of the table.
+enum class OutsideGrid { clamp, refuse };
+
 struct Table {
   Material material;  // fixed values, and defaults for the parameters
   Symmetry symmetry = Symmetry::isotropic;
@@ -107,6 +112,10 @@ struct Table {
   const Axis& parameter_axis(std::size_t k) const {
     return is_factored() ? factors.grid[k] : remainder.axes()[k];
   }
+
+  // The material at fixed parameters, for which look-ups are prepared (table_bsdf.h). Textured ones:
+  // textured_table.h. Throws Error naming the key if parameters are refused.
+  TableBsdf bind(const Parameters& parameters, OutsideGrid outside = OutsideGrid::refuse) const;
 
   // T at a node or between: see above. `x` = (film_thickness_nm, base_ior, cos_theta).
   Rgb transmittance(const std::array<double, 3>& x) const;

@@ -17,8 +17,6 @@
 
 namespace sunbeam {
 
-enum class OutsideGrid { clamp, refuse };
-
 struct BoundTable;
 
 struct EvalPdf {

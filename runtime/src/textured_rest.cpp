@@ -5,12 +5,14 @@
 namespace sunbeam {
 namespace {
 
-constexpr double kNodesPerFringe = 12;  // of the shortest wavelength
+constexpr double kNodesPerFringe = 10;  // of the shortest wavelength
 constexpr int kLeastThicknesses = 9;
-constexpr int kIorNodes = 15, kAbsorptionNodes = 17;
+constexpr int kIorNodes = 12, kAbsorptionNodes = 12;
 constexpr double kLeastCosine = 1e-4;
-constexpr double kLeastFrame = 0.05;   // of m~
-constexpr double kLeastShare = 0.01;   // of the channels' mean: a folded colour may pass through 0
+constexpr double kLeastFrame = 0.05, kLeastSmoothFrame = 1e-3;  // of m~
+constexpr double kLeastShare = 0.01;  // of the channels' mean: a folded colour may pass through 0
+// Of L. At grazing a pigment of many colours would leave it with poles, where no light is left.
+constexpr double kLeastLog = -80, kMostLog = 20;
 constexpr double kLeastValue = 1e-18;  // of B over its frame
 
 int thickness_nodes(const Table& table) {
@@ -51,7 +53,8 @@ TexturedFrame::TexturedFrame(const Material& material, double base_ior, double d
   const double ratio2 = bends ? square(material.exterior_ior / base_ior) : 1;
   below_scale = static_cast<float>(ratio2);
   below_offset = static_cast<float>(1 - ratio2);
-  least_below = static_cast<float>(std::max(blur2, square(kLeastFrame)));
+  least_below = static_cast<float>(
+      square(material.is_smooth() ? kLeastSmoothFrame : std::max(std::sqrt(blur2), kLeastFrame)));
 }
 
 // Goes through the nodes; what depends on few of the parameters is found once.
@@ -238,8 +241,8 @@ class TexturedRest::Builder {
       const double hemispherical_decay = channel < 3 ? 0 : least_decay_.back();
       const double decay =
           hemispherical_decay + least_decay_[c] - depth_ * double{rest_.absorption_[channel]} * path_[c];
-      result[channel] =
-          static_cast<float>(std::max(std::log(albedo / scale / double{passing[channel]}) - decay, -80.0));
+      const double value = std::log(albedo / scale / double{passing[channel]}) - decay;
+      result[channel] = static_cast<float>(std::clamp(value, kLeastLog, kMostLog));
     }
     return result;
   }

@@ -16,7 +16,7 @@ class TexturedRest {
  public:
   explicit TexturedRest(const Table& table);
 
-  static constexpr int kCosines = 21;  // even roots
+  static constexpr int kCosines = 13;  // even roots
 
   TexturedPlace place(const Parameters& at) const;
 

@@ -32,6 +32,12 @@ class TexturedRest {
     return low + c.upper_weight * (high - low);
   }
 
+  // Asks for what at() will read, to work meanwhile.
+  void prefetch(const TexturedPlace& place, float root) const {
+    const EvenPosition c(root, kCosines);
+    for (const int corner : corner_) __builtin_prefetch(nodes_.data() + place.row + corner + c.lower);
+  }
+
   // The film's transmittance folded, from its reflectance; the last lane is the mean. Kept above 0.
   Color4 passing(const FloatRgb& reflectance) const {
     const Color4 t{total_.r - reflectance.r, total_.g - reflectance.g, total_.b - reflectance.b, 0};

@@ -149,36 +149,56 @@ double TexturedTable::At::albedo(const Vec3& wo) const {
   return double{r.r + r.g + r.b} / 3 + double{data_->rest_factor(place_, frame_, o, r)[3]};
 }
 
+// The viewer's own part of a path.
+struct TexturedTable::At::Viewer {
+  TexturedEnd end;
+  FloatRgb reflectance;
+  Color4 factor;
+  float chance;  // of sampling the first surface
+};
+
+// The film at the two cosines that depend on wi.
+inline EvalPdf TexturedTable::At::finish(const Vec3& wo, const Viewer& o, const TexturedEnd& i, const Vec3& h,
+                                         float l2, const FloatRgb* film) const {
+  const TexturedData& data = *data_;
+  const Color4 rest = o.factor * data.rest_factor(place_, frame_, i, film[0]);
+  const float rest_pdf = (1 - o.chance) * rest_density_.pdf(i.cosine);
+  if (data.smooth) return {to_rgb(rest), double{rest_pdf}};
+  const auto lobe = data.first_lobe(wo, o.end, i, h, l2);
+  const Color4 reflectance{film[1].r, film[1].g, film[1].b, 0};
+  return {to_rgb(rest + lobe.value * reflectance), double{rest_pdf + o.chance * lobe.pdf}};
+}
+
+inline TexturedTable::At::Viewer TexturedTable::At::viewer(const TexturedEnd& o, const FloatRgb& film) const {
+  const Color4 factor = data_->rest_factor(place_, frame_, o, film);
+  return {o, film, factor, data_->first_chance(film, factor)};
+}
+
 EvalPdf TexturedTable::At::eval_pdf(const Vec3& wo, const Vec3& wi) const {
   if (wo.z <= 0 || wi.z <= 0) return {};
-  const TexturedData& data = *data_;
-  const TexturedEnd o(frame_, data.alpha2, wo), i(frame_, data.alpha2, wi);
+  const TexturedEnd o(frame_, data_->alpha2, wo), i(frame_, data_->alpha2, wi);
+  data_->rest.prefetch(place_, o.root);
+  data_->rest.prefetch(place_, i.root);
   const Vec3 h = wo + wi;
   const auto l2 = static_cast<float>(dot(h, h));
   const float cosines[] = {o.film_cosine, i.film_cosine, std::min(0.5f * std::sqrt(l2), 1.0f)};
-  FloatRgb r[3];
-  fold({cosines, data.smooth ? 2u : 3u}, r);
-
-  const Color4 factor_o = data.rest_factor(place_, frame_, o, r[0]);
-  const Color4 rest = factor_o * data.rest_factor(place_, frame_, i, r[1]);
-  const float chance = data.first_chance(r[0], factor_o);
-  const float rest_pdf = (1 - chance) * rest_density_.pdf(i.cosine);
-  if (data.smooth) return {to_rgb(rest), double{rest_pdf}};
-  const auto lobe = data.first_lobe(wo, o, i, h, l2);
-  const Color4 film{r[2].r, r[2].g, r[2].b, 0};
-  return {to_rgb(rest + lobe.value * film), double{rest_pdf + chance * lobe.pdf}};
+  FloatRgb film[3];
+  fold({cosines, data_->smooth ? 2u : 3u}, film);
+  return finish(wo, viewer(o, film[0]), i, h, l2, film + 1);
 }
 
 std::optional<BsdfSample> TexturedTable::At::sample(const Vec3& wo, Rng& rng) const {
   if (wo.z <= 0) return {};
   const TexturedData& data = *data_;
-  const TexturedEnd o(frame_, data.alpha2, wo);
-  FloatRgb r;
-  fold({&o.film_cosine, 1}, &r);
-  const float chance = data.first_chance(r, data.rest_factor(place_, frame_, o, r));
+  const TexturedEnd end(frame_, data.alpha2, wo);
+  data.rest.prefetch(place_, end.root);
+  FloatRgb film[2];
+  fold({&end.film_cosine, 1}, film);
+  const Viewer o = viewer(end, film[0]);
   Vec3 wi;
-  if (rng.uniform() < double{chance}) {
-    if (data.smooth) return BsdfSample{{-wo.x, -wo.y, wo.z}, Rgb(r.r, r.g, r.b) / double{chance}, true};
+  if (rng.uniform() < double{o.chance}) {
+    const Rgb mirrored(o.reflectance.r, o.reflectance.g, o.reflectance.b);
+    if (data.smooth) return BsdfSample{{-wo.x, -wo.y, wo.z}, mirrored / double{o.chance}, true};
     const double u = rng.uniform();
     wi = data.normals.sample_mirrored(wo, {u, rng.uniform()});
   } else {
@@ -187,7 +207,13 @@ std::optional<BsdfSample> TexturedTable::At::sample(const Vec3& wo, Rng& rng) co
     wi = {sine * phi.cosine, sine * phi.sine, cosine};
   }
   if (wi.z <= 0) return {};
-  const EvalPdf at = eval_pdf(wo, wi);
+  const TexturedEnd i(frame_, data.alpha2, wi);
+  data.rest.prefetch(place_, i.root);
+  const Vec3 h = wo + wi;
+  const auto l2 = static_cast<float>(dot(h, h));
+  const float cosines[] = {i.film_cosine, std::min(0.5f * std::sqrt(l2), 1.0f)};
+  fold({cosines, data.smooth ? 1u : 2u}, film);
+  const EvalPdf at = finish(wo, o, i, h, l2, film);
   if (at.pdf <= 0) return {};
   return BsdfSample{wi, at.f * (wi.z / at.pdf), false};
 }

@@ -39,6 +39,7 @@ namespace sunbeam {
 
 struct FloatRgb;
 struct TexturedData;
+struct TexturedEnd;
 
 // Copies share the data. Const calls, those of At included, allocate nothing and lock nothing, and may run on
 // any number of threads.
@@ -67,7 +68,11 @@ class TexturedTable {
    private:
     friend class TexturedTable;
     At(const TexturedData& data, const Parameters& parameters);
+    struct Viewer;
     void fold(std::span<const float> cosines, FloatRgb* reflectance) const;
+    Viewer viewer(const TexturedEnd& o, const FloatRgb& film) const;
+    EvalPdf finish(const Vec3& wo, const Viewer& o, const TexturedEnd& i, const Vec3& h, float l2,
+                   const FloatRgb* film) const;
 
     const TexturedData* data_;
     Parameters parameters_;

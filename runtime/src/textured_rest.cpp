@@ -13,6 +13,7 @@ constexpr double kLeastFrame = 0.05, kLeastSmoothFrame = 1e-3;  // of m~
 constexpr double kLeastShare = 0.01;  // of the channels' mean: a folded colour may pass through 0
 // Of L. At grazing a pigment of many colours would leave it with poles, where no light is left.
 constexpr double kLeastLog = -80, kMostLog = 20;
+constexpr double kLeastChance = 0.02;  // of either technique: their estimates may be far off
 constexpr double kLeastValue = 1e-18;  // of B over its frame
 
 int thickness_nodes(const Table& table) {
@@ -226,25 +227,29 @@ class TexturedRest::Builder {
       norm += weight * arriving;
       for (int c = 0; c < kCosines; ++c) b[c] += weight * double{share_[k * kCosines + c]};
     }
-    for (int c = 0; c < kCosines; ++c) row[c] = node(b[c], norm, c, rest_.passing(reflectance[c]));
+    for (int c = 0; c < kCosines; ++c) row[c] = node(b[c], norm, c, reflectance[c]);
   }
 
-  // `b` is the rest's directional albedo, `norm` its hemispherical integral.
-  Color4 node(const Rgb& b, const Rgb& norm, int c, const Color4& passing) const {
+  // `b` is the rest's directional albedo, `norm` its hemispherical integral; both without the least decay.
+  Color4 node(const Rgb& b, const Rgb& norm, int c, const FloatRgb& reflectance) const {
+    const Color4 passing = rest_.passing(reflectance);
     Color4 result{};
-    const double grey = std::max(mean(b), kLeastValue);
-    for (int channel = 0; channel < 4; ++channel) {
-      const double albedo = channel < 3 ? std::max(b[channel], kLeastShare * grey) : grey;
+    for (int channel = 0; channel < 3; ++channel) {
+      const double albedo = std::max({b[channel], kLeastShare * mean(b), kLeastValue});
       const double scale =
-          channel < 3 ? std::sqrt(std::max(norm[channel], kLeastShare * mean(norm)) + square(kLeastValue))
-                      : 1;
-      const double hemispherical_decay = channel < 3 ? 0 : least_decay_.back();
-      const double decay =
-          hemispherical_decay + least_decay_[c] - depth_ * double{rest_.absorption_[channel]} * path_[c];
+          std::sqrt(std::max({norm[channel], kLeastShare * mean(norm), square(kLeastValue)}));
+      const double decay = least_decay_[c] - depth_ * double{rest_.absorption()[channel]} * path_[c];
       const double value = std::log(albedo / scale / double{passing[channel]}) - decay;
       result[channel] = static_cast<float>(std::clamp(value, kLeastLog, kMostLog));
     }
+    result[3] = static_cast<float>(first_chance(reflectance, mean(b), c));
     return result;
+  }
+
+  double first_chance(const FloatRgb& r, double rest, int c) const {
+    const double of_first = std::max(0.0, double{r.r + r.g + r.b} / 3);
+    const double of_rest = std::max(0.0, rest) * std::exp(-least_decay_[c] - least_decay_.back());
+    return std::clamp(of_first / (of_first + of_rest + kLeastValue), kLeastChance, 1 - kLeastChance);
   }
 
   const Table& table_;

@@ -20,7 +20,7 @@ class TexturedRest {
 
   TexturedPlace place(const Parameters& at) const;
 
-  // L at the root of a cosine; the last lane is that of the albedo.
+  // L at the root of a cosine; the last lane is the chance of sampling the first surface.
   Color4 at(const TexturedPlace& place, float root) const {
     const EvenPosition c(root, kCosines);
     Color4 low{}, high{};
@@ -38,10 +38,9 @@ class TexturedRest {
     for (const int corner : corner_) __builtin_prefetch(nodes_.data() + place.row + corner + c.lower);
   }
 
-  // The film's transmittance folded, from its reflectance; the last lane is the mean. Kept above 0.
+  // The film's transmittance folded, from its reflectance; kept above 0.
   Color4 passing(const FloatRgb& reflectance) const {
-    const Color4 t{total_.r - reflectance.r, total_.g - reflectance.g, total_.b - reflectance.b, 0};
-    const Color4 all{t[0], t[1], t[2], (t[0] + t[1] + t[2]) * (1.0f / 3)};
+    const Color4 all{total_.r - reflectance.r, total_.g - reflectance.g, total_.b - reflectance.b, 0};
     return all > kLeastPassing ? all : Color4{} + kLeastPassing;
   }
 

@@ -10,8 +10,6 @@
 namespace sunbeam {
 namespace {
 
-constexpr float kLeastChance = 0.02f;  // of either technique: their estimates may be far off
-
 const Table& supported(const Table& table) {
   const auto refuse = [](const std::string& what) { throw Error("textured parameters: " + what); };
   if (!table.is_factored()) refuse("found a dense table; allowed: factored");
@@ -47,6 +45,7 @@ struct TexturedEnd {
   float film_cosine;  // c~
   float path;         // 1 / m~
   float ggx_root;     // cosine (1 + 2 Lambda)
+  Color4 l{};         // L, where it has been asked for
 };
 
 struct TexturedData {
@@ -57,17 +56,10 @@ struct TexturedData {
         smooth(table.material.is_smooth()),
         alpha2(static_cast<float>(square(table.material.roughness.u))) {}
 
-  // B; the last lane is the albedo of the rest.
-  Color4 rest_factor(const TexturedPlace& place, const TexturedFrame& frame, const TexturedEnd& end,
+  // B from L.
+  Color4 rest_factor(const Color4& l, const TexturedFrame& frame, const TexturedEnd& end,
                      const FloatRgb& reflectance) const {
-    const Color4 exponent = rest.at(place, end.root) - (frame.optical_depth * end.path) * rest.absorption();
-    return rest.passing(reflectance) * exp4(exponent);
-  }
-
-  // Of sampling the first surface.
-  float first_chance(const FloatRgb& reflectance, const Color4& rest_factor) const {
-    const float of_first = std::max(0.0f, (reflectance.r + reflectance.g + reflectance.b) * (1.0f / 3));
-    return std::min(std::max(of_first / (of_first + rest_factor[3]), kLeastChance), 1 - kLeastChance);
+    return rest.passing(reflectance) * exp4(l - (frame.optical_depth * end.path) * rest.absorption());
   }
 
   struct Lobe {
@@ -146,59 +138,44 @@ double TexturedTable::At::albedo(const Vec3& wo) const {
   const TexturedEnd o(frame_, data_->alpha2, wo);
   FloatRgb r;
   fold({&o.film_cosine, 1}, &r);
-  return double{r.r + r.g + r.b} / 3 + double{data_->rest_factor(place_, frame_, o, r)[3]};
+  return double{r.r + r.g + r.b} / 3 / double{data_->rest.at(place_, o.root)[3]};
 }
 
-// The viewer's own part of a path.
-struct TexturedTable::At::Viewer {
-  TexturedEnd end;
-  FloatRgb reflectance;
-  Color4 factor;
-  float chance;  // of sampling the first surface
-};
-
-// The film at the two cosines that depend on wi.
-inline EvalPdf TexturedTable::At::finish(const Vec3& wo, const Viewer& o, const TexturedEnd& i, const Vec3& h,
-                                         float l2, const FloatRgb* film) const {
+// The viewer has its L.
+inline EvalPdf TexturedTable::At::eval_pdf(const Vec3& wo, const TexturedEnd& o, const Vec3& wi) const {
   const TexturedData& data = *data_;
-  const Color4 rest = o.factor * data.rest_factor(place_, frame_, i, film[0]);
-  const float rest_pdf = (1 - o.chance) * rest_density_.pdf(i.cosine);
-  if (data.smooth) return {to_rgb(rest), double{rest_pdf}};
-  const auto lobe = data.first_lobe(wo, o.end, i, h, l2);
-  const Color4 reflectance{film[1].r, film[1].g, film[1].b, 0};
-  return {to_rgb(rest + lobe.value * reflectance), double{rest_pdf + o.chance * lobe.pdf}};
-}
-
-inline TexturedTable::At::Viewer TexturedTable::At::viewer(const TexturedEnd& o, const FloatRgb& film) const {
-  const Color4 factor = data_->rest_factor(place_, frame_, o, film);
-  return {o, film, factor, data_->first_chance(film, factor)};
-}
-
-EvalPdf TexturedTable::At::eval_pdf(const Vec3& wo, const Vec3& wi) const {
-  if (wo.z <= 0 || wi.z <= 0) return {};
-  const TexturedEnd o(frame_, data_->alpha2, wo), i(frame_, data_->alpha2, wi);
-  data_->rest.prefetch(place_, o.root);
-  data_->rest.prefetch(place_, i.root);
+  const TexturedEnd i(frame_, data.alpha2, wi);
+  data.rest.prefetch(place_, i.root);
   const Vec3 h = wo + wi;
   const auto l2 = static_cast<float>(dot(h, h));
   const float cosines[] = {o.film_cosine, i.film_cosine, std::min(0.5f * std::sqrt(l2), 1.0f)};
   FloatRgb film[3];
-  fold({cosines, data_->smooth ? 2u : 3u}, film);
-  return finish(wo, viewer(o, film[0]), i, h, l2, film + 1);
+  fold({cosines, data.smooth ? 2u : 3u}, film);
+
+  const Color4 rest = data.rest_factor(o.l, frame_, o, film[0]) *
+                      data.rest_factor(data.rest.at(place_, i.root), frame_, i, film[1]);
+  const float chance = o.l[3], rest_pdf = (1 - chance) * rest_density_.pdf(i.cosine);
+  if (data.smooth) return {to_rgb(rest), double{rest_pdf}};
+  const auto lobe = data.first_lobe(wo, o, i, h, l2);
+  const Color4 reflectance{film[2].r, film[2].g, film[2].b, 0};
+  return {to_rgb(rest + lobe.value * reflectance), double{rest_pdf + chance * lobe.pdf}};
+}
+
+EvalPdf TexturedTable::At::eval_pdf(const Vec3& wo, const Vec3& wi) const {
+  if (wo.z <= 0 || wi.z <= 0) return {};
+  TexturedEnd o(frame_, data_->alpha2, wo);
+  o.l = data_->rest.at(place_, o.root);
+  return eval_pdf(wo, o, wi);
 }
 
 std::optional<BsdfSample> TexturedTable::At::sample(const Vec3& wo, Rng& rng) const {
   if (wo.z <= 0) return {};
   const TexturedData& data = *data_;
-  const TexturedEnd end(frame_, data.alpha2, wo);
-  data.rest.prefetch(place_, end.root);
-  FloatRgb film[2];
-  fold({&end.film_cosine, 1}, film);
-  const Viewer o = viewer(end, film[0]);
+  TexturedEnd o(frame_, data.alpha2, wo);
+  o.l = data.rest.at(place_, o.root);
   Vec3 wi;
-  if (rng.uniform() < double{o.chance}) {
-    const Rgb mirrored(o.reflectance.r, o.reflectance.g, o.reflectance.b);
-    if (data.smooth) return BsdfSample{{-wo.x, -wo.y, wo.z}, mirrored / double{o.chance}, true};
+  if (const double chance{o.l[3]}; rng.uniform() < chance) {
+    if (data.smooth) return BsdfSample{{-wo.x, -wo.y, wo.z}, dirac(wo) / chance, true};
     const double u = rng.uniform();
     wi = data.normals.sample_mirrored(wo, {u, rng.uniform()});
   } else {
@@ -207,13 +184,7 @@ std::optional<BsdfSample> TexturedTable::At::sample(const Vec3& wo, Rng& rng) co
     wi = {sine * phi.cosine, sine * phi.sine, cosine};
   }
   if (wi.z <= 0) return {};
-  const TexturedEnd i(frame_, data.alpha2, wi);
-  data.rest.prefetch(place_, i.root);
-  const Vec3 h = wo + wi;
-  const auto l2 = static_cast<float>(dot(h, h));
-  const float cosines[] = {i.film_cosine, std::min(0.5f * std::sqrt(l2), 1.0f)};
-  fold({cosines, data.smooth ? 1u : 2u}, film);
-  const EvalPdf at = finish(wo, o, i, h, l2, film);
+  const EvalPdf at = eval_pdf(wo, o, wi);
   if (at.pdf <= 0) return {};
   return BsdfSample{wi, at.f * (wi.z / at.pdf), false};
 }

@@ -17,7 +17,7 @@
 // over (thickness, base IOR, absorption, cosine), all linear between nodes that are even in thickness and in
 // the roots of the others. c~ and m~, the cosines outside and below the film, are kept away from 0 by the
 // roughness; a is the mean absorption of the channel relative to that of the parameter. A fourth lane of L
-// tells the rest's albedo, for sampling.
+// is the chance of sampling the first surface.
 //
 // sample mixes bounded visible normals (ggx.h; for a smooth film its mirror direction, a Dirac), and for the
 // rest two densities proportional to powers of cos(theta_i), which grow with the absorption. The choice
@@ -68,11 +68,8 @@ class TexturedTable {
    private:
     friend class TexturedTable;
     At(const TexturedData& data, const Parameters& parameters);
-    struct Viewer;
     void fold(std::span<const float> cosines, FloatRgb* reflectance) const;
-    Viewer viewer(const TexturedEnd& o, const FloatRgb& film) const;
-    EvalPdf finish(const Vec3& wo, const Viewer& o, const TexturedEnd& i, const Vec3& h, float l2,
-                   const FloatRgb* film) const;
+    EvalPdf eval_pdf(const Vec3& wo, const TexturedEnd& o, const Vec3& wi) const;
 
     const TexturedData* data_;
     Parameters parameters_;

@@ -116,6 +116,7 @@ class TexturedRest::Builder {
     material_ = table_.material;
     material_.base_ior = base_ior_;
     find_pigment();
+    find_quadrature();
     returned_.clear();
     arrival_.clear();
     for (std::size_t k = 0; k < waves_.size(); ++k) take_slices(k);
@@ -139,6 +140,15 @@ class TexturedRest::Builder {
       for (std::size_t k = 0; k < waves_.size(); ++k)
         pigment_[k * kCosines + c] =
             static_cast<float>(-depth_ * (waves_.absorption[k] - least_) * per_cosine);
+    }
+  }
+
+  // Trapezoids in the root: cos dw = 4 pi u^3 du.
+  void find_quadrature() {
+    for (int c = 0; c < kCosines; ++c) {
+      const double root = static_cast<double>(c) / (kCosines - 1), end = c == kCosines - 1 ? 0.5 : 1;
+      quadrature_[c] = 4 * kPi / (kCosines - 1) * end * root * root * root *
+                       std::exp(least_decay_.back() - least_decay_[c]);
     }
   }
 
@@ -201,17 +211,12 @@ class TexturedRest::Builder {
     }
   }
 
-  // Int A cos dw by trapezoids in the root, cos dw = 4 pi u^3 du; relative to the least decay at normal
-  // incidence, so that no pigment makes it vanish.
+  // Int A cos dw, relative to the least decay at normal incidence, so that no pigment makes it vanish.
   double hemispherical(const float* values) const {
     double sum = 0;
-    for (int c = 0; c < kCosines; ++c) {
-      const double root = static_cast<double>(c) / (kCosines - 1);
-      sum += values[c] * quadrature_decay(c) * root * root * root * (c == kCosines - 1 ? 0.5 : 1);
-    }
-    return sum * 4 * kPi / (kCosines - 1);
+    for (int c = 0; c < kCosines; ++c) sum += quadrature_[c] * double{values[c]};
+    return sum;
   }
-  double quadrature_decay(int c) const { return std::exp(least_decay_.back() - least_decay_[c]); }
 
   void fold(int d, Color4* row) {
     std::array<FloatRgb, kCosines> reflectance;
@@ -262,7 +267,7 @@ class TexturedRest::Builder {
   Material material_;
   double base_ior_ = 1, depth_ = 0;
   std::array<float, kCosines> film_cosines_{}, path_{};
-  std::array<double, kCosines> least_decay_{};
+  std::array<double, kCosines> least_decay_{}, quadrature_{};
   std::vector<float> pigment_, share_;        // (wavelength, cosine)
   std::vector<std::vector<float>> returned_;  // of each wavelength: (fringe_order)
   std::vector<std::vector<float>> arrival_;   // and (fringe_order, cosine)

@@ -47,7 +47,6 @@ class TexturedRest {
   const FilmSpectrum& film() const { return film_; }
   const Color4& absorption() const { return absorption_; }
   const EvenAxis& axis(std::size_t k) const { return axes_[k]; }
-  FloatRgb total() const { return total_; }
   std::size_t bytes() const { return nodes_.size() * sizeof(Color4); }
 
  private:

@@ -1,7 +1,9 @@
 // What a textured table knows of one parameter point; the library's own business.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 
 #include "sunbeam/material.h"
 

@@ -15,6 +15,7 @@
 #include "sunbeam/lambert.h"
 #include "sunbeam/table_bsdf.h"
 #include "sunbeam/table_io.h"
+#include "sunbeam/textured_table.h"
 #include "tests/bench/yardstick.h"
 
 namespace sunbeam {
@@ -107,6 +108,45 @@ void sample(benchmark::State& state, const Bsdf& bsdf) {
   for (auto _ : state) benchmark::DoNotOptimize(bsdf.sample(pairs[k++ % kPairs].wo, rng));
 }
 
+// Of the default recipe: the golden table has no grid of three parameters.
+const TexturedTable& textured_table() {
+  static const TexturedTable textured(
+      bake_table(load_recipe(SUNBEAM_SOURCE_DIR "/tables/recipes/sunbeam.toml", {"accuracy.noise=0.03"}),
+                 {.seed = 1, .threads = 0, .on_progress = {}}));
+  return textured;
+}
+
+std::vector<Parameters> random_parameters() {
+  Rng rng(4, 0);
+  std::vector<Parameters> parameters(kPairs);
+  for (Parameters& at : parameters) at = {1500 * rng.uniform(), 1 + rng.uniform(), 1.5 * rng.uniform()};
+  return parameters;
+}
+
+// Other parameters at every call, located in the grid.
+void textured_eval_pdf(benchmark::State& state) {
+  const TexturedTable& textured = textured_table();
+  const auto pairs = random_pairs();
+  const auto parameters = random_parameters();
+  std::size_t k = 0;
+  for (auto _ : state) {
+    const Pair& pair = pairs[k % kPairs];
+    benchmark::DoNotOptimize(textured.at(parameters[k++ % kPairs]).eval_pdf(pair.wo, pair.wi));
+  }
+}
+
+void textured_sample(benchmark::State& state) {
+  const TexturedTable& textured = textured_table();
+  const auto pairs = random_pairs();
+  const auto parameters = random_parameters();
+  Rng rng(5, 0);
+  std::size_t k = 0;
+  for (auto _ : state) {
+    const Vec3& wo = pairs[k % kPairs].wo;
+    benchmark::DoNotOptimize(textured.at(parameters[k++ % kPairs]).sample(wo, rng));
+  }
+}
+
 void yardstick(benchmark::State& state) {
   const Yardstick look_up;
   std::size_t k = 0;
@@ -131,6 +171,8 @@ BENCHMARK_CAPTURE(sample, dense_plain, dense_plain());
 BENCHMARK_CAPTURE(sample, dense_scattering, dense_scattering());
 BENCHMARK_CAPTURE(sample, exact, exact_bsdf());
 BENCHMARK_CAPTURE(sample, live, live_bsdf());
+BENCHMARK(textured_eval_pdf);
+BENCHMARK(textured_sample);
 
 }  // namespace
 }  // namespace sunbeam

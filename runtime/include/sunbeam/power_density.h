@@ -1,0 +1,44 @@
+// A density over the hemisphere between two powers of the cosine, drawn without the library's pow: exponents
+// are 2^j - 1, whose inverse is j roots.
+#pragma once
+
+#include <cmath>
+
+#include "sunbeam/core/rng.h"
+#include "sunbeam/core/vec.h"
+
+namespace sunbeam {
+
+class PowerDensity {
+ public:
+  // Near cos^exponent, exponent >= 1 (more than 15 counts as 15).
+  explicit PowerDensity(float exponent) {
+    const float next = exponent + 1;
+    level_ = next < 4 ? 1 : next < 8 ? 2 : 3;
+    const auto lower = static_cast<float>(1 << level_);
+    upper_ = std::min(std::max(next / lower - 1, 0.0f), 1.0f);
+  }
+
+  // Cosine, > 0.
+  double sample(Rng& rng) const {
+    const int roots = level_ + (rng.uniform() < double{upper_} ? 1 : 0);
+    double x = 1 - rng.uniform();
+    for (int k = 0; k < roots; ++k) x = std::sqrt(x);
+    return x;
+  }
+  // 1/sr, uniform in azimuth.
+  float pdf(float cosine) const {
+    const float c2 = cosine * cosine, c4 = c2 * c2;
+    const float to_level = level_ == 1 ? 1 : level_ == 2 ? c2 : c4 * c2;  // cos^(2^j - 2)
+    const float to_next = level_ == 1 ? c2 : level_ == 2 ? c4 : c4 * c4;  // cos^(2^j)
+    const auto lower = static_cast<float>(1 << level_);
+    constexpr auto kPerTurn = static_cast<float>(kInvPi / 2);
+    return kPerTurn * lower * cosine * to_level * (1 - upper_ + upper_ * 2 * to_next);
+  }
+
+ private:
+  int level_ = 1;
+  float upper_ = 0;  // chance of the next level
+};
+
+}  // namespace sunbeam

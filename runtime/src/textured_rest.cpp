@@ -1,0 +1,301 @@
+#include "textured_rest.h"
+
+#include <cmath>
+
+namespace sunbeam {
+namespace {
+
+constexpr double kNodesPerFringe = 10;  // of the shortest wavelength
+constexpr int kLeastThicknesses = 9;
+constexpr int kIorNodes = 12, kAbsorptionNodes = 12;
+constexpr double kLeastCosine = 1e-4;
+constexpr double kLeastFrame = 0.05, kLeastSmoothFrame = 1e-3;  // of m~
+constexpr double kLeastShare = 0.01;  // of the channels' mean: a folded colour may pass through 0
+// Of L. At grazing a pigment of many colours would leave it with poles, where no light is left.
+constexpr double kLeastLog = -80, kMostLog = 20;
+constexpr double kLeastChance = 0.02;  // of either technique: their estimates may be far off
+constexpr double kLeastValue = 1e-18;  // of B over its frame
+
+int thickness_nodes(const Table& table) {
+  const auto& nm = table.factors.wavelengths.nm;
+  const Axis& axis = table.factors.grid[0];
+  const double fringes =
+      fringe_order(table.material, 1) * (axis.high() - axis.low()) / *std::min_element(nm.begin(), nm.end());
+  return std::max(kLeastThicknesses, static_cast<int>(std::ceil(fringes * kNodesPerFringe)) + 1);
+}
+
+// The weighted mean of the pigment's spectrum in each channel, and over channels.
+Color4 mean_absorption(const Wavelengths& w) {
+  Rgb sum, total;
+  for (std::size_t k = 0; k < w.size(); ++k) {
+    sum += w.absorption[k] * w.weight[k];
+    total += w.weight[k];
+  }
+  Rgb result;
+  for (int c = 0; c < 3; ++c) result[c] = std::max(sum[c] / total[c], 0.0);
+  Color4 lanes = to_color4(result);
+  lanes[3] = static_cast<float>(mean(result));
+  return lanes;
+}
+
+double node_cosine(int c) {
+  const double root = static_cast<double>(c) / (TexturedRest::kCosines - 1);
+  return std::max(root * root, kLeastCosine);
+}
+
+}  // namespace
+
+TexturedFrame::TexturedFrame(const Material& material, double base_ior, double depth)
+    : optical_depth(static_cast<float>(depth)) {
+  const double blur2 = square(0.3 * material.roughness.u);
+  film_scale = static_cast<float>(1 / (1 + blur2));
+  film_offset = static_cast<float>(blur2 / (1 + blur2));
+  const bool bends = material.transmission == Transmission::refract;
+  const double ratio2 = bends ? square(material.exterior_ior / base_ior) : 1;
+  below_scale = static_cast<float>(ratio2);
+  below_offset = static_cast<float>(1 - ratio2);
+  least_below = static_cast<float>(
+      square(material.is_smooth() ? kLeastSmoothFrame : std::max(std::sqrt(blur2), kLeastFrame)));
+}
+
+// Goes through the nodes; what depends on few of the parameters is found once.
+class TexturedRest::Builder {
+ public:
+  Builder(const Table& table, TexturedRest& rest)
+      : table_(table), waves_(table.factors.wavelengths), rest_(rest), least_(waves_.absorption[0]) {
+    for (const double a : waves_.absorption) least_ = std::min(least_, a);
+    for (int c = 0; c < kCosines; ++c) cosines_.push_back(node_cosine(c));
+  }
+
+  void build() {
+    find_order_stencils();
+    for (int n = 0; n < rest_.axes_[1].size(); ++n)
+      for (int s = 0; s < rest_.axes_[2].size(); ++s) build_at(n, s);
+  }
+
+ private:
+  // Where a fringe order lies among the nodes of an array, whose axis is even or has one node.
+  struct OrderStencil {
+    std::size_t first = 0;
+    std::array<float, 4> weight{1, 0, 0, 0};
+  };
+  static OrderStencil order_stencil(const Axis& axis, double order) {
+    const Stencil at = axis.stencil(order);
+    OrderStencil result;
+    // Four nodes always, so that loops have no branch; slices carry three rows more.
+    result.first = at.node[0];
+    for (std::size_t k = 0; k < 4; ++k)
+      result.weight[k] = k < at.count ? static_cast<float>(at.weight[k]) : 0;
+    return result;
+  }
+  static float blend(const std::vector<float>& values, const OrderStencil& at, std::size_t stride,
+                     std::size_t column) {
+    const float* from = values.data() + at.first * stride + column;
+    return at.weight[0] * from[0] + at.weight[1] * from[stride] + at.weight[2] * from[2 * stride] +
+           at.weight[3] * from[3 * stride];
+  }
+
+  // Of all thicknesses, wavelengths and cosines, and of normal incidence.
+  void find_order_stencils() {
+    const Factors& factors = table_.factors;
+    const double straight_down = fringe_order(table_.material, 1);
+    for (int d = 0; d < rest_.axes_[0].size(); ++d)
+      for (const double nm : waves_.nm) {
+        const double per = rest_.axes_[0].node(d) / nm;
+        returned_at_.push_back(order_stencil(factors.returned.axes()[2], straight_down * per));
+        if (factors.arrival.empty()) continue;
+        for (const double cosine : cosines_)
+          arrival_at_.push_back(
+              order_stencil(factors.arrival.axes()[2], fringe_order(table_.material, cosine) * per));
+      }
+  }
+
+  void build_at(int n, int s) {
+    base_ior_ = rest_.axes_[1].node(n);
+    depth_ = rest_.axes_[2].node(s) * table_.material.pigment_thickness_nm;
+    material_ = table_.material;
+    material_.base_ior = base_ior_;
+    find_pigment();
+    find_quadrature();
+    returned_.clear();
+    arrival_.clear();
+    for (std::size_t k = 0; k < waves_.size(); ++k) take_slices(k);
+    for (int d = 0; d < rest_.axes_[0].size(); ++d) {
+      find_shares(d);
+      const int cell = (d * rest_.axes_[1].size() + n) * rest_.axes_[2].size() + s;
+      fold(d, rest_.nodes_.data() + static_cast<std::size_t>(cell) * kCosines);
+    }
+  }
+
+  // What the pigment leaves of each wavelength, relative to the one that it absorbs least; and frames.
+  void find_pigment() {
+    const TexturedFrame frame(table_.material, base_ior_, depth_);
+    pigment_.assign(waves_.size() * kCosines, 1);
+    for (int c = 0; c < kCosines; ++c) {
+      const auto cosine = static_cast<float>(cosines_[c]);
+      film_cosines_[c] = std::min(std::sqrt(frame.film_cosine_squared(cosine)), 1.0f);
+      path_[c] = 1 / std::sqrt(frame.pigment_cosine_squared(cosine));
+      const double per_cosine = 1 / arrival_cosine(material_, cosines_[c]);
+      least_decay_[c] = depth_ * least_ * per_cosine;
+      for (std::size_t k = 0; k < waves_.size(); ++k)
+        pigment_[k * kCosines + c] =
+            static_cast<float>(-depth_ * (waves_.absorption[k] - least_) * per_cosine);
+    }
+  }
+
+  // Trapezoids in the root: cos dw = 4 pi u^3 du.
+  void find_quadrature() {
+    for (int c = 0; c < kCosines; ++c) {
+      const double root = static_cast<double>(c) / (kCosines - 1), end = c == kCosines - 1 ? 0.5 : 1;
+      quadrature_[c] = 4 * kPi / (kCosines - 1) * end * root * root * root *
+                       std::exp(least_decay_.back() - least_decay_[c]);
+    }
+  }
+
+  void take_slices(std::size_t k) {
+    const double depth = depth_ * waves_.absorption[k];
+    if (k > 0 && waves_.absorption[k] == waves_.absorption[k - 1]) {
+      returned_.push_back(returned_.back());
+      if (!table_.factors.arrival.empty()) arrival_.push_back(arrival_.back());
+      return;
+    }
+    const std::array at{base_ior_, depth};
+    const NdArray returned = table_.factors.returned.slice(at);
+    returned_.emplace_back(returned.values().begin(), returned.values().end());
+    returned_.back().resize(returned.cells() + 3);
+    if (!table_.factors.arrival.empty()) arrival_.push_back(at_cosines(table_.factors.arrival.slice(at)));
+  }
+
+  // (fringe_order, cos_theta, phi) at the cosines of the nodes, with three rows more.
+  std::vector<float> at_cosines(const NdArray& slice) const {
+    const std::size_t orders = slice.axes()[0].size(), stride = slice.stride(0);
+    std::vector<float> result((orders + 3) * kCosines);
+    for (int c = 0; c < kCosines; ++c) {
+      const Stencil at = slice.axes()[1].stencil(cosines_[c]);
+      for (std::size_t o = 0; o < orders; ++o) {
+        double sum = 0;
+        for (std::size_t j = 0; j < at.count; ++j)
+          sum += at.weight[j] * double{slice.values()[o * stride + at.node[j] * slice.stride(1)]};
+        result[o * kCosines + c] = static_cast<float>(sum);
+      }
+    }
+    return result;
+  }
+
+  // A of every wavelength and cosine over that of the pigment where it absorbs least.
+  void find_shares(int d) {
+    share_ = pigment_;
+    if (table_.factors.arrival.empty()) return find_smooth_shares(d);
+    for (std::size_t k = 0; k < waves_.size(); ++k) {
+      const OrderStencil* at = arrival_at_.data() + (d * waves_.size() + k) * kCosines;
+      for (std::size_t c = 0; c < kCosines; ++c)
+        share_[k * kCosines + c] += blend(arrival_[k], at[c], kCosines, c);
+    }
+    exponentiate();
+  }
+  void find_smooth_shares(int d) {
+    exponentiate();
+    std::array<float, kMostWavelengths> passing;
+    for (int c = 0; c < kCosines; ++c) {
+      rest_.film_.powers(rest_.axes_[0].node(d), base_ior_, static_cast<float>(cosines_[c]), passing.data());
+      for (std::size_t k = 0; k < waves_.size(); ++k) share_[k * kCosines + c] *= passing[k];
+    }
+  }
+  void exponentiate() {
+    for (std::size_t k = 0; k < share_.size(); k += 4) {
+      Color4 four{};
+      const std::size_t count = std::min<std::size_t>(4, share_.size() - k);
+      std::copy_n(share_.data() + k, count, reinterpret_cast<float*>(&four));
+      four = exp4(four);
+      std::copy_n(reinterpret_cast<const float*>(&four), count, share_.data() + k);
+    }
+  }
+
+  // Int A cos dw, relative to the least decay at normal incidence, so that no pigment makes it vanish.
+  double hemispherical(const float* values) const {
+    double sum = 0;
+    for (int c = 0; c < kCosines; ++c) sum += quadrature_[c] * double{values[c]};
+    return sum;
+  }
+
+  void fold(int d, Color4* row) {
+    std::array<FloatRgb, kCosines> reflectance;
+    rest_.film_.fold(rest_.axes_[0].node(d), base_ior_, film_cosines_, reflectance.data());
+    std::array<Rgb, kCosines> b{};
+    Rgb norm;
+    for (std::size_t k = 0; k < waves_.size(); ++k) {
+      const double returned = blend(returned_[k], returned_at_[d * waves_.size() + k], 1, 0);
+      const double gain =
+          material_.radiance_scale() * waves_.albedo[k] * kInvPi / (1 - waves_.albedo[k] * returned);
+      const double arriving = hemispherical(share_.data() + k * kCosines);
+      const Rgb weight = gain * arriving * waves_.weight[k];
+      norm += weight * arriving;
+      for (int c = 0; c < kCosines; ++c) b[c] += weight * double{share_[k * kCosines + c]};
+    }
+    for (int c = 0; c < kCosines; ++c) row[c] = node(b[c], norm, c, reflectance[c]);
+  }
+
+  // `b` is the rest's directional albedo, `norm` its hemispherical integral; both without the least decay.
+  Color4 node(const Rgb& b, const Rgb& norm, int c, const FloatRgb& reflectance) const {
+    const Color4 passing = rest_.passing(reflectance);
+    Color4 result{};
+    for (int channel = 0; channel < 3; ++channel) {
+      const double albedo = std::max({b[channel], kLeastShare * mean(b), kLeastValue});
+      const double scale =
+          std::sqrt(std::max({norm[channel], kLeastShare * mean(norm), square(kLeastValue)}));
+      const double decay = least_decay_[c] - depth_ * double{rest_.absorption()[channel]} * path_[c];
+      const double value = std::log(albedo / scale / double{passing[channel]}) - decay;
+      result[channel] = static_cast<float>(std::clamp(value, kLeastLog, kMostLog));
+    }
+    result[3] = static_cast<float>(first_chance(reflectance, mean(b), c));
+    return result;
+  }
+
+  double first_chance(const FloatRgb& r, double rest, int c) const {
+    const double of_first = std::max(0.0, double{r.r + r.g + r.b} / 3);
+    const double of_rest = std::max(0.0, rest) * std::exp(-least_decay_[c] - least_decay_.back());
+    return std::clamp(of_first / (of_first + of_rest + kLeastValue), kLeastChance, 1 - kLeastChance);
+  }
+
+  const Table& table_;
+  const Wavelengths& waves_;
+  TexturedRest& rest_;
+  double least_;  // absorption of any wavelength
+  std::vector<double> cosines_;
+  std::vector<OrderStencil> returned_at_, arrival_at_;
+
+  Material material_;
+  double base_ior_ = 1, depth_ = 0;
+  std::array<float, kCosines> film_cosines_{}, path_{};
+  std::array<double, kCosines> least_decay_{}, quadrature_{};
+  std::vector<float> pigment_, share_;        // (wavelength, cosine)
+  std::vector<std::vector<float>> returned_;  // of each wavelength: (fringe_order)
+  std::vector<std::vector<float>> arrival_;   // and (fringe_order, cosine)
+};
+
+TexturedRest::TexturedRest(const Table& table)
+    : film_(table.factors.wavelengths, table.material.exterior_ior, table.material.film_ior),
+      axes_{EvenAxis(table.factors.grid[0], thickness_nodes(table)),
+            EvenAxis(table.factors.grid[1], kIorNodes), EvenAxis(table.factors.grid[2], kAbsorptionNodes)},
+      total_(FilmWavelengths(table.factors.wavelengths).total_weight),
+      absorption_(mean_absorption(table.factors.wavelengths)) {
+  const int absorption = kCosines, ior = axes_[2].size() * absorption, thickness = axes_[1].size() * ior;
+  for (int k = 0; k < 8; ++k)
+    corner_[k] = (k & 4 ? thickness : 0) + (k & 2 ? ior : 0) + (k & 1 ? absorption : 0);
+  nodes_.resize(static_cast<std::size_t>(axes_[0].size()) * thickness);
+  Builder(table, *this).build();
+}
+
+TexturedPlace TexturedRest::place(const Parameters& at) const {
+  const EvenPosition d = axes_[0].locate(at.film_thickness_nm), n = axes_[1].locate(at.base_ior),
+                     s = axes_[2].locate(at.absorption_per_nm);
+  TexturedPlace place;
+  place.row = static_cast<std::size_t>(d.lower * corner_[4] + n.lower * corner_[2] + s.lower * corner_[1]);
+  for (int k = 0; k < 8; ++k)
+    place.weight[k] = (k & 4 ? d.upper_weight : 1 - d.upper_weight) *
+                      (k & 2 ? n.upper_weight : 1 - n.upper_weight) *
+                      (k & 1 ? s.upper_weight : 1 - s.upper_weight);
+  return place;
+}
+
+}  // namespace sunbeam

@@ -210,10 +210,11 @@ Rgb BoundTable::first_albedo(const Vec3& wo, int nodes) const {
   Rgb sum;
   for (int i = 0; i < nodes; ++i)
     for (int j = 0; j < nodes; ++j) {
-      const Point2 u{(i + 0.5) / nodes, (j + 0.5) / nodes};
-      const Vec3 h = normals.sample_visible(wo, u);
+      const double turn = kPi * (j + 0.5) / nodes;  // roots at both ends of the height become smooth
+      const Vec3 h = normals.sample_visible(wo, {(i + 0.5) / nodes, (1 - std::cos(turn)) / 2});
       const Vec3 wi = reflect(wo, h);
-      if (wi.z > 0) sum += film_reflectance(dot(wo, h)) * normals.g2_over_g1(wo, wi);
+      if (wi.z > 0)
+        sum += film_reflectance(dot(wo, h)) * (normals.g2_over_g1(wo, wi) * kPi / 2 * std::sin(turn));
     }
   return sum / (nodes * nodes);
 }

@@ -224,9 +224,8 @@ class FactorWalks {
   }
 
   // A at (depth, order), row-major, of one replicate.
-  std::vector<double> arrivals(const Legs& legs, const Material& material, const Axis& depths,
-                               FringePowers& powers, std::size_t direction, std::size_t replicate,
-                               double& count) const {
+  std::vector<double> arrivals(const Legs& legs, const Axis& depths, FringePowers& powers,
+                               std::size_t direction, std::size_t replicate, double& count) const {
     const std::size_t orders = powers.transmittance.size();
     std::vector<double> sums(depths.size() * orders);
     legs.visit_arrivals(directions_[direction], rng_of(direction, replicate), [&](const Leg& leg) {
@@ -236,7 +235,6 @@ class FactorWalks {
                    static_cast<int>(orders), sums.data() + t * orders);
       ++count;
     });
-    (void)material;
     return sums;
   }
 
@@ -252,7 +250,7 @@ class FactorWalks {
     const Axis no_pigment{"", "", {0}};
     const Axis& depths_of_legs = depths.size() == 1 ? no_pigment : depths;
     for (std::size_t r = 0; r < kReplicates; ++r) {
-      const auto one = arrivals(legs, material, depths_of_legs, powers, direction, r, count);
+      const auto one = arrivals(legs, depths_of_legs, powers, direction, r, count);
       for (std::size_t k = 0; k < sum.size(); ++k) {
         sum[k] += one[k] / kReplicates;
         squares[k] += square(one[k]) / kReplicates;

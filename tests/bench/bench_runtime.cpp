@@ -147,6 +147,43 @@ void textured_sample(benchmark::State& state) {
   }
 }
 
+// Both of one pair at once, and the values of 256 lights for one viewer, a light.
+void bound_eval_pdf(benchmark::State& state) {
+  const auto& bsdf = static_cast<const TableBsdf&>(table_bsdf());
+  const auto pairs = random_pairs();
+  std::size_t k = 0;
+  for (auto _ : state) {
+    const Pair& pair = pairs[k++ % kPairs];
+    benchmark::DoNotOptimize(bsdf.eval_pdf(pair.wo, pair.wi));
+  }
+}
+
+void bound_eval_span(benchmark::State& state) {
+  constexpr std::size_t kLights = 256;
+  const auto& bsdf = static_cast<const TableBsdf&>(table_bsdf());
+  const auto pairs = random_pairs();
+  std::vector<Vec3> wi;
+  for (std::size_t k = 0; k < kLights; ++k) wi.push_back(pairs[k].wi);
+  std::vector<Rgb> f(kLights);
+  std::size_t k = 0;
+  for (auto _ : state) {
+    bsdf.eval(pairs[k++ % kPairs].wo, wi, f);
+    benchmark::DoNotOptimize(f.data());
+    benchmark::ClobberMemory();
+  }
+  state.counters["ns_a_light"] = benchmark::Counter(
+      kLights * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void bind(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(table().bind(Parameters::of(table().material)));
+}
+
+void load(benchmark::State& state) {
+  const std::string path = SUNBEAM_SOURCE_DIR "/tables/golden/preview.exr";
+  for (auto _ : state) benchmark::DoNotOptimize(load_table_exr(path));
+}
+
 void yardstick(benchmark::State& state) {
   const Yardstick look_up;
   std::size_t k = 0;
@@ -171,6 +208,10 @@ BENCHMARK_CAPTURE(sample, dense_plain, dense_plain());
 BENCHMARK_CAPTURE(sample, dense_scattering, dense_scattering());
 BENCHMARK_CAPTURE(sample, exact, exact_bsdf());
 BENCHMARK_CAPTURE(sample, live, live_bsdf());
+BENCHMARK(bound_eval_pdf);
+BENCHMARK(bound_eval_span);
+BENCHMARK(bind);
+BENCHMARK(load);
 BENCHMARK(textured_eval_pdf);
 BENCHMARK(textured_sample);
 

@@ -85,9 +85,9 @@ struct Tables {
 
 // Another encoding is one more line: a name and what it changes in the recipe.
 const std::vector<std::pair<std::string, Overrides>> kBaked = {
-    {"sunbeam", {}},
-    {"sunbeam, 5 angles", {"table.angles=5"}},
-    {"sunbeam, 20 angles", {"table.angles=20"}},
+    {"factored", {"table.encoding=\"factored\""}},
+    {"dense", {"table.encoding=\"dense\"", "accuracy.noise=0.002"}},
+    {"dense, no closed forms", {"table.encoding=\"dense\"", "table.frame=\"none\"", "accuracy.noise=0.002"}},
 };
 
 constexpr HalfGrid::Nodes kUniform[] = {

@@ -210,7 +210,7 @@ TEST(FactoredReader, NamesTheEncoding) {
   expect_named(
       small_factored_table(),
       {{"unknown", [](Table& t) { t.info["encoding"] = "sparse"; }, {"'sparse'", "dense, factored"}},
-       {"the other one", [](Table& t) { t.info["encoding"] = "dense"; }, {"'film_reflectance' is missing"}},
+       {"the other one", [](Table& t) { t.info["encoding"] = "dense"; }, {"'rest_frame' is missing"}},
        {"none", [](Table& t) { t.info.erase("encoding"); }, {"'encoding' is missing"}}});
 }
 

@@ -15,7 +15,7 @@ albedo = 0.5
 {material}
 
 [grid]
-absorption_per_nm = [0.05, 0.2]
+absorption_per_nm = [0.05, 0.1, 0.2]
 
 [table]
 encoding = "{encoding}"

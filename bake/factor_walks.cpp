@@ -247,10 +247,8 @@ class FactorWalks {
     const Legs legs(material);
     FringePowers powers(ThinFilm::of(material), orders, fringe_order(material, w.z));
     std::vector<double> sum(depths.size() * orders.size()), squares(sum.size());
-    const Axis no_pigment{"", "", {0}};
-    const Axis& depths_of_legs = depths.size() == 1 ? no_pigment : depths;
     for (std::size_t r = 0; r < kReplicates; ++r) {
-      const auto one = arrivals(legs, depths_of_legs, powers, direction, r, count);
+      const auto one = arrivals(legs, depths, powers, direction, r, count);
       for (std::size_t k = 0; k < sum.size(); ++k) {
         sum[k] += one[k] / kReplicates;
         squares[k] += square(one[k]) / kReplicates;
@@ -262,7 +260,7 @@ class FactorWalks {
         const std::size_t k = t * orders.size() + j;
         const std::size_t cell =
             ior * array.stride(0) + t * array.stride(1) + j * array.stride(2) + direction;
-        const double path = depths_of_legs.nodes[t] / arrival_cosine(material, w.z);
+        const double path = depths.nodes[t] / arrival_cosine(material, w.z);
         array.set(cell, Rgb(std::log(std::max(sum[k], kLeastArrival)) + path));
         variance += std::max(0.0, squares[k] / square(sum[k]) - 1) / (kReplicates - 1);
       }

@@ -45,6 +45,7 @@ class BenchTables(unittest.TestCase):
 
     def test_ours_is_smaller_and_nearer_than_plain_tables(self):
         for ours in self.family("sunbeam"):
+            self.assertLess(ours["error_median"], 1e-3, ours["name"])  # one node a parameter is exact in all of them
             for name in ("uniform f 32x32x32", "uniform f cos cos 32x32x32", "MERL 90x90x180"):
                 with self.subTest(ours=ours["name"], table=name):
                     self.assertLess(ours["error_median"], self.tables[name]["error_median"])

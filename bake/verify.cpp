@@ -161,14 +161,6 @@ class PointCheck {
   Directions directions_;
 };
 
-// Order statistic: the smallest value that at least a share q of all values do not exceed.
-double quantile(std::vector<double> values, double q) {
-  const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(values.size())));
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 template <class Member>
 Quantiles quantiles(const std::vector<VerifyPoint>& points, Member member) {
   std::vector<double> values;
@@ -177,6 +169,13 @@ Quantiles quantiles(const std::vector<VerifyPoint>& points, Member member) {
 }
 
 }  // namespace
+
+double quantile(std::vector<double> values, double q) {
+  const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(values.size())));
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
 
 Estimator default_truth(const Recipe& recipe) {
   constexpr double kFinestByWalks = 0.005;  // finer, PFMC would take hours to show

@@ -40,6 +40,9 @@ struct VerifyPoint {
   double reciprocity = 0;  // max |f(i,o) - f(o,i)| / max(|f(i,o)|, |f(o,i)|, 0.002/pi)
 };
 
+// Order statistic of one value or more: the smallest that at least a share q of all values do not exceed.
+double quantile(std::vector<double> values, double q);
+
 struct Quantiles {
   double median, p95, p99, max;
 };

@@ -29,13 +29,6 @@ std::vector<ChartPoint> few(std::vector<ChartPoint> points) {
   return points;
 }
 
-double quantile(std::vector<double> values, double q) {
-  const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(values.size())));
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 // A quantile in every stretch of the axis that holds points.
 std::vector<ChartPoint> binned(const std::vector<ChartPoint>& points, const ErrorAxis& axis, double q) {
   std::vector<std::vector<double>> bins(kBins);

@@ -1,7 +1,6 @@
 // The rest of a dense table (table.h) at one parameter point: flat arrays of single floats over the angles.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <vector>
 

@@ -1,5 +1,6 @@
 #include "sunbeam/table_bsdf.h"
 
+#include <functional>
 #include <variant>
 
 #include "bound_rest.h"

@@ -1,6 +1,9 @@
 // Synthetic tables of known content, and a folder to write them to.
 #pragma once
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -60,6 +63,16 @@ inline std::string refusal(const Form& form, const std::string& bytes, const std
     return error.what();
   }
   return "accepted";
+}
+
+// Every outcome but a crash or a wrong table: an Error that names the file, or the very table.
+inline void expect_error_or_equal(const Form& form, const std::string& bytes, const std::string& name,
+                                  const Table& table, const std::string& what) {
+  try {
+    EXPECT_TRUE(form.parse(bytes, name) == table) << form.name << ", " << what;
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), ::testing::StartsWith(name)) << form.name << ", " << what;
+  }
 }
 
 inline std::map<std::string, std::string> complete_info() {

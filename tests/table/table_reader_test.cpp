@@ -19,6 +19,7 @@ namespace sunbeam {
 namespace {
 
 using test::axis;
+using test::expect_error_or_equal;
 using test::Form;
 using test::forms;
 using test::refusal;
@@ -359,16 +360,6 @@ TEST(TableWriter, EmptyTableIsRefused) {
   for (const Form& form : forms()) EXPECT_THROW(form.bytes(Table()), Error) << form.name;
 }
 
-// Every outcome but a crash or a wrong table: an Error that names the file, or the very table.
-void expect_error_or_equal(const Form& form, const std::string& bytes, const Table& table,
-                           const std::string& what) {
-  try {
-    EXPECT_TRUE(form.parse(bytes, kName) == table) << form.name << ", " << what;
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), StartsWith(kName)) << form.name << ", " << what;
-  }
-}
-
 TEST(TableReader, SurvivesTruncation) {
   const Table table = small_table();
   for (const Form& form : forms()) {
@@ -405,7 +396,7 @@ TEST(TableReader, SurvivesFlippedBits) {
         const unsigned bit = rng.next() % 8;
         std::string damaged = bytes;
         damaged[at] = static_cast<char>(damaged[at] ^ (1 << bit));
-        expect_error_or_equal(form, damaged, table,
+        expect_error_or_equal(form, damaged, kName, table,
                               "bit " + std::to_string(bit) + " of byte " + std::to_string(at));
       }
     }

@@ -57,6 +57,12 @@ struct RenderOptions {
   std::string estimator = "auto";   // of --material live
   std::optional<std::string> size;  // WIDTHxHEIGHT; as the scene says if not given
   int samples_per_pixel = 0;        // 0: as the scene says
+  std::optional<std::string> time;  // limit, with its unit
+  std::optional<std::string> crop;  // X0,Y0,X1,Y1
+  double noise = 0;                 // limit; 0: none
+  double watch_seconds = 0;         // between pictures on disk; 0: only the last
+  bool aovs = false;
+  std::string resume;  // picture to go on from
   int threads = 0;
   std::uint64_t seed = 1;
 };

@@ -138,7 +138,16 @@ void add_render(CLI::App& app, RenderOptions& o, int& exit_code) {
       ->check(CLI::IsMember({"auto", "pfmc", "bidirectional", "exact"}));
   command->add_option("--table", o.table, "Table to use in place of the scene's own");
   command->add_option("--size", o.size, "WIDTHxHEIGHT in pixels");
-  command->add_option("--spp", o.samples_per_pixel, "Samples per pixel")->check(whole_number(1, 1 << 24));
+  command->add_option("--spp", o.samples_per_pixel, "Samples per pixel; the most with --time or --noise")
+      ->check(whole_number(1, 1 << 24));
+  command->add_option("--time", o.time, "Stop after this long: 10s, 500ms, 2m, 1h");
+  command->add_option("--noise", o.noise, "Stop where the relative standard error is this small: 0.02")
+      ->check(CLI::Range(1e-6, 1.0));
+  command->add_option("--crop", o.crop, "X0,Y0,X1,Y1: render only these pixels, x from X0 to X1 - 1");
+  command->add_flag("--watch{2}", o.watch_seconds,
+                    "Write the picture so far every 2 s, --watch=5: every 5 s");
+  command->add_flag("--aovs", o.aovs, "Add layers: albedo, normals, depth, film thickness");
+  command->add_option("--resume", o.resume, "Picture of the same scene to go on from");
   add_threads(command, o.threads);
   command->add_option("--seed", o.seed, "Random seed")->check(whole_number(0, kAnySeed));
   command->add_option("--stats", o.stats, "Write timing and counts to this JSON file");

@@ -22,14 +22,14 @@ Progress::Progress(std::string what, std::string unit, double total)
       start_(std::chrono::steady_clock::now()),
       last_(start_) {}
 
-std::string Progress::line(double fraction) const {
+std::string Progress::line(double fraction, double done) const {
   const double elapsed = seconds_between(start_, std::chrono::steady_clock::now());
   const double left = fraction > 0 ? elapsed * (1 - fraction) / fraction : 0;
   return fmt::format("{} {:3.0f} %  {:.4g} {}/s  {:.0f} s left", what_, 100 * fraction,
-                     total_ * fraction / std::max(elapsed, 1e-9), unit_, left);
+                     done / std::max(elapsed, 1e-9), unit_, left);
 }
 
-void Progress::operator()(double fraction) {
+void Progress::show(double fraction, double done) {
   const auto now = std::chrono::steady_clock::now();
   const bool finished = fraction >= 1;
   if (terminal_) {
@@ -38,11 +38,11 @@ void Progress::operator()(double fraction) {
     constexpr int kWidth = 24;
     const int filled = static_cast<int>(fraction * kWidth);
     fmt::print(stderr, "\r[{}{}] {}\x1b[K{}", std::string(filled, '#'), std::string(kWidth - filled, '.'),
-               line(fraction), finished ? "\n" : "");
+               line(fraction, done), finished ? "\n" : "");
     std::fflush(stderr);
   } else if (static_cast<int>(fraction * 10) > tenths_) {
     tenths_ = static_cast<int>(fraction * 10);
-    fmt::print(stderr, "{}\n", line(fraction));
+    fmt::print(stderr, "{}\n", line(fraction, done));
   }
 }
 

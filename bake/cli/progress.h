@@ -10,10 +10,12 @@ class Progress {
  public:
   // `unit` and `total` give the rate: "nodes", 1280 shows nodes a second.
   Progress(std::string what, std::string unit, double total);
-  void operator()(double fraction);
+  void operator()(double fraction) { show(fraction, total_ * fraction); }
+  // Where the total is not known: `done` of the units so far.
+  void show(double fraction, double done);
 
  private:
-  std::string line(double fraction) const;
+  std::string line(double fraction, double done) const;
 
   std::string what_, unit_;
   double total_;

@@ -1,32 +1,31 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
+#include <array>
 #include <charconv>
-#include <filesystem>
-#include <memory>
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 
 #include "bake/cli/commands.h"
+#include "bake/cli/interrupt.h"
+#include "bake/cli/picture.h"
 #include "bake/cli/progress.h"
-#include "bake/estimator.h"
-#include "bake/live/exact_bsdf.h"
-#include "bake/live/live_bsdf.h"
-#include "bake/recipe.h"
-#include "bake/version.h"
-#include "runtime/tracer/image_io.h"
+#include "bake/cli/scene_materials.h"
+#include "runtime/config/config.h"
 #include "runtime/tracer/render.h"
 #include "runtime/tracer/scene.h"
-#include "sunbeam/color_converted_bsdf.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/file.h"
-#include "sunbeam/lambert.h"
-#include "sunbeam/table_bsdf.h"
-#include "sunbeam/table_vdb.h"
+#include "sunbeam/core/hash.h"
 
 namespace sunbeam {
 namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 struct ImageSize {
   int width = 0, height = 0;  // 0: as the scene says
@@ -45,96 +44,77 @@ ImageSize parse_size(const std::string& text) {
   return size;
 }
 
-Table load_scene_table(const Scene& scene, const std::string& scene_path) {
-  if (scene.table.empty()) throw Error(scene_path + ": key 'table' is missing; --material live needs none");
-  if (!std::filesystem::exists(scene.table))
-    throw Error(fmt::format("{}: the scene's table {} does not exist; bake it: sunbeam bake {} -o {}",
-                            scene_path, scene.table, scene.recipe.empty() ? "RECIPE" : scene.recipe,
-                            scene.table));
-  return load_table(scene.table);
-}
-
-// A skin's own values over those of the recipe or table.
-Material skin_material(const SceneMaterial& skin, Material material) {
-  material.film_thickness_nm = skin.film_thickness_nm.value_or(material.film_thickness_nm);
-  material.base_ior = skin.base_ior.value_or(material.base_ior);
-  material.absorption_per_nm = skin.absorption_per_nm.value_or(material.absorption_per_nm);
-  return material;
-}
-
-std::unique_ptr<Bsdf> table_skin(const Table& table, const SceneMaterial& skin,
-                                 const std::string& scene_path) {
-  try {
-    return std::make_unique<TableBsdf>(table, Parameters::of(skin_material(skin, table.material)),
-                                       OutsideGrid::refuse);
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: material '{}': {}", scene_path, skin.name, error.what()));
+// X0,Y0,X1,Y1; the size of the whole picture is filled in by render().
+PixelWindow parse_crop(const std::string& text) {
+  PixelWindow crop;
+  const std::array<int*, 4> numbers = {&crop.x0, &crop.y0, &crop.x1, &crop.y1};
+  const char *at = text.data(), *end = at + text.size();
+  for (int* number : numbers) {
+    if (number != numbers[0] && (at == end || *at++ != ',')) at = nullptr;
+    const auto read =
+        at ? std::from_chars(at, end, *number) : std::from_chars_result{end, std::errc::invalid_argument};
+    if (read.ec != std::errc())
+      throw Error(
+          fmt::format("--crop: found '{}'; allowed: X0,Y0,X1,Y1 in pixels from the top left corner", text));
+    at = read.ptr;
   }
+  if (at != end)
+    throw Error(
+        fmt::format("--crop: found '{}'; allowed: X0,Y0,X1,Y1 in pixels from the top left corner", text));
+  return crop;
 }
 
-std::unique_ptr<Bsdf> live_skin(const Material& material, const Spectrum& spectrum, Estimator estimator) {
-  const Wavelengths wavelengths = spectrum.wavelengths(material);
-  if (estimator == Estimator::exact) return std::make_unique<ExactBsdf>(material, wavelengths);
-  return std::make_unique<LiveBsdf>(material, wavelengths, technique_of(estimator));
+// "90", "90s", "1.5m", "500ms", "2h".
+double parse_seconds(const std::string& text) {
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto number = std::from_chars(text.data(), end, value);
+  const std::string unit(number.ptr, end);
+  const double scale = unit.empty() || unit == "s" ? 1
+                       : unit == "ms"              ? 1e-3
+                       : unit == "m"               ? 60
+                       : unit == "h"               ? 3600
+                                                   : 0;
+  if (number.ec != std::errc() || scale == 0 || !(value > 0) || !std::isfinite(value))
+    throw Error(
+        fmt::format("--time: found '{}'; allowed: a number above 0 with s, ms, m or h, such as 10s", text));
+  return scale * value;
 }
 
-// One BSDF for each material of the scene.
-class Materials {
+// The scene file's own content but for the number of samples, which a continued picture may raise.
+std::string scene_hash(const std::string& path) {
+  return content_hash(ConfigTable::load(path, {"render.spp=1"}).canonical_text());
+}
+
+// A bar on stderr, the picture so far on disk every few seconds, and Ctrl-C.
+class Monitor {
  public:
-  Materials(const Scene& scene, const std::string& scene_path, const std::string& mode, Estimator estimator) {
-    std::optional<Table> table;
-    std::optional<Recipe> recipe;
-    for (const SceneMaterial& m : scene.materials) {
-      if (m.type == SceneMaterial::Type::diffuse) {
-        add(std::make_unique<Lambert>(m.albedo));
-      } else if (mode == "diffuse") {
-        add(std::make_unique<Lambert>(scene.diffuse_albedo));
-      } else if (mode == "live") {
-        if (scene.recipe.empty())
-          throw Error(scene_path + ": key 'recipe' is missing; --material live needs it");
-        if (!recipe) recipe = load_recipe(scene.recipe);
-        add_live(skin_material(m, recipe->material), recipe->spectrum, estimator,
-                 scene_path + ": material '" + m.name + "': ");
-      } else {
-        if (!table) table = load_scene_table(scene, scene_path);
-        add_skin(table_skin(*table, m, scene_path), table->color_space());
-      }
-    }
-    if (table) table_hash_ = table->info.at("recipe_hash");
-  }
+  Monitor(const RenderOptions& options, const PictureSource& source) : options_(options), source_(source) {}
 
-  std::span<const Bsdf* const> bsdfs() const { return pointers_; }
-  const std::string& table_hash() const { return table_hash_; }
-  // The live skins' evaluators, by name; empty if there are none.
-  std::string estimators() const { return fmt::format("{}", fmt::join(estimators_, ", ")); }
+  // False stops.
+  bool operator()(const RenderResult& so_far) {
+    progress_.show(so_far.stats.fraction, static_cast<double>(so_far.stats.samples));
+    if (options_.watch_seconds > 0 && seconds_since(written_) >= wait_) write(so_far);
+    return !interrupt_.requested();
+  }
 
  private:
-  void add_live(const Material& material, const Spectrum& spectrum, Estimator wanted,
-                const std::string& where) {
-    try {
-      const Estimator estimator = estimator_for_render(wanted, material);
-      add_skin(live_skin(material, spectrum, estimator), spectrum.color_space());
-      estimators_.insert(name_of(estimator));
-    } catch (const Error& error) {
-      throw Error(where + error.what());
-    }
-  }
-  void add(std::unique_ptr<Bsdf> bsdf) {
-    pointers_.push_back(bsdf.get());
-    owned_.push_back(std::move(bsdf));
+  // The first picture comes early; and writing takes a tenth of the time at most.
+  void write(const RenderResult& so_far) {
+    const Clock::time_point start = Clock::now();
+    write_picture(options_.output, so_far, source_, false);
+    wait_ = std::max(options_.watch_seconds, 10 * seconds_since(start));
+    written_ = Clock::now();
   }
 
-  // The tracer works in linear Rec.709.
-  void add_skin(std::unique_ptr<Bsdf> bsdf, ColorSpace space) {
-    if (space != ColorSpace::rec709)
-      bsdf = std::make_unique<ColorConvertedBsdf>(std::move(bsdf), space, ColorSpace::rec709);
-    add(std::move(bsdf));
-  }
+  static constexpr double kFirstPicture = 0.3;
 
-  std::vector<std::unique_ptr<Bsdf>> owned_;
-  std::vector<const Bsdf*> pointers_;
-  std::string table_hash_;
-  std::set<std::string> estimators_;
+  const RenderOptions& options_;
+  const PictureSource& source_;
+  Interrupt interrupt_;
+  Progress progress_{"render", "samples", 0};
+  Clock::time_point written_ = Clock::now();
+  double wait_ = kFirstPicture;
 };
 
 std::string stats_json(const RenderStats& s, const std::string& estimators) {
@@ -151,63 +131,76 @@ std::string stats_json(const RenderStats& s, const std::string& estimators) {
   return json.dump(2) + "\n";
 }
 
-// Says how much light the PNG shows that is not there, if it is more than rounding to bytes could hide.
-void report_clipping(const std::string& png, const ClipAccount& account) {
-  constexpr double kNegligible = 1e-4;
-  if (account.luminance_added <= kNegligible * std::abs(account.luminance)) return;
-  fmt::print(stderr,
-             "{}: {} of {} pixels lie outside Rec.709 (lowest component {:.3g}); raising them to 0 added "
-             "{:.2g} % of "
-             "luminance. The .exr keeps their sign.\n",
-             png, account.clipped, account.colors, account.lowest,
-             100 * account.luminance_added / std::abs(account.luminance));
-}
-
-}  // namespace
-
-int run_render(const RenderOptions& options) {
-  if (extension(options.output) != ".exr")
-    throw Error(options.output + ": extension is '" + extension(options.output) +
-                "'; allowed for an image: .exr");
+RenderSettings read_settings(const RenderOptions& options) {
   RenderSettings settings;
   if (options.size) {
     const ImageSize size = parse_size(*options.size);
     settings.width = size.width;
     settings.height = size.height;
   }
-  Scene scene = load_scene(options.scene);
-  if (!options.table.empty()) scene.table = options.table;
-  if (options.estimator != "auto" && options.material != "live")
-    throw Error("--estimator: found '" + options.estimator + "' with --material " + options.material +
-                "; allowed with --material live");
-  const Materials materials(scene, options.scene, options.material, estimator_of(options.estimator));
-  const std::string png = std::filesystem::path(options.output).replace_extension(".png").string();
-  for (const auto& path : {options.output, png}) require_writable(path);
-  if (!options.stats.empty()) require_writable(options.stats);
-
   settings.spp = options.samples_per_pixel;
   settings.threads = options.threads;
   settings.seed = options.seed;
-  settings.progress = Progress("render", "%", 100);
-  const RenderResult result = render(scene, materials.bsdfs(), settings);
+  settings.noise = options.noise;
+  settings.first_hits = options.aovs;
+  if (options.crop) settings.crop = parse_crop(*options.crop);
+  if (options.time) settings.seconds = parse_seconds(*options.time);
+  constexpr int kMost = 1 << 24, kMostForNoise = 1 << 16;
+  if (settings.spp == 0 && (settings.seconds > 0 || settings.noise > 0))
+    settings.spp = settings.seconds > 0 ? kMost : kMostForNoise;
+  return settings;
+}
 
-  write_exr(options.output, {result.mean,
-                             result.variance,
-                             {{"sunbeam.scene", options.scene},
-                              {"sunbeam.material", options.material},
-                              {"sunbeam.estimator", materials.estimators()},
-                              {"sunbeam.recipe_hash", materials.table_hash()},
-                              {"sunbeam.seed", std::to_string(options.seed)},
-                              {"sunbeam.tool_version", kToolVersion}}});
-  report_clipping(png, write_png(png, result.mean));
+void require_sound(const RenderOptions& options) {
+  if (extension(options.output) != ".exr")
+    throw Error(options.output + ": extension is '" + extension(options.output) +
+                "'; allowed for an image: .exr");
+  if (options.estimator != "auto" && options.material != "live")
+    throw Error("--estimator: found '" + options.estimator + "' with --material " + options.material +
+                "; allowed with --material live");
+}
+
+}  // namespace
+
+int run_render(const RenderOptions& options) {
+  const Clock::time_point start = Clock::now();
+  require_sound(options);
+  RenderSettings settings = read_settings(options);
+  Scene scene = load_scene(options.scene);
+  if (!options.table.empty()) scene.table = options.table;
+  const SceneMaterials materials(scene, options.scene, options.material, estimator_of(options.estimator));
+  for (const auto& path : {options.output, png_beside(options.output)}) require_writable(path);
+  if (!options.stats.empty()) require_writable(options.stats);
+
+  const PictureSource source{.scene = options.scene,
+                             .scene_hash = scene_hash(options.scene),
+                             .material = options.material,
+                             .estimators = materials.estimators(),
+                             .table_hash = materials.table_hash(),
+                             .seed = options.seed};
+  std::optional<RenderResult> earlier;
+  if (!options.resume.empty()) {
+    earlier = read_picture(options.resume, source);
+    settings.resume = &*earlier;
+  }
+  if (settings.seconds > 0) settings.seconds = std::max(1e-3, settings.seconds - seconds_since(start));
+  Monitor monitor(options, source);
+  settings.monitor = std::ref(monitor);
+  RenderResult result = render(scene, materials.bsdfs(), settings);
+  if (earlier) result.stats.seconds += earlier->stats.seconds;
+
+  write_picture(options.output, result, source, true);
   if (!options.stats.empty())
     write_file_atomically(options.stats, stats_json(result.stats, materials.estimators()));
   if (result.stats.bad_samples > 0)
     fmt::print(stderr, "warning: {} samples were not finite and count as black\n", result.stats.bad_samples);
   if (!materials.estimators().empty()) fmt::print(stderr, "estimator: {}\n", materials.estimators());
-  fmt::print(stderr, "{} and {}: {:.2f} s, {:.3g} samples/s\n", options.output, png, result.stats.seconds,
-             result.stats.samples_per_second);
-  return 0;
+  fmt::print(stderr, "{} and {}: {:.2f} s, {:.3g} samples/s\n", options.output, png_beside(options.output),
+             result.stats.seconds, result.stats.samples_per_second);
+  if (!result.stats.stopped) return 0;
+  fmt::print(stderr, "stopped at {:.0f} %; go on with --resume {}\n", 100 * result.stats.fraction,
+             options.output);
+  return 130;  // as a shell tells an interrupted command
 }
 
 }  // namespace sunbeam

@@ -1,19 +1,30 @@
 #include "runtime/tracer/camera.h"
 
+#include "sunbeam/core/warp.h"
+
 namespace sunbeam {
 
-Camera::Camera(const CameraView& view, int width, int height) : position_(view.position) {
+Camera::Camera(const CameraView& view, int width, int height)
+    : position_(view.position), has_lens_(view.lens_radius > 0) {
   const Vec3 forward = normalize(view.look_at - view.position);
   const Vec3 right = normalize(cross(forward, view.up));
   const Vec3 down = cross(forward, right);
-  const double pixel = 2 * std::tan(view.fov_deg * kPi / 360) / height;
+  const int pixels = view.fov_axis == CameraView::FovAxis::horizontal ? width : height;
+  const double pixel = 2 * view.focus_distance * std::tan(view.fov_deg * kPi / 360) / pixels;
   pixel_x_ = pixel * right;
   pixel_y_ = pixel * down;
-  top_left_ = forward - (0.5 * width) * pixel_x_ - (0.5 * height) * pixel_y_;
+  top_left_ = view.focus_distance * forward - (0.5 * width) * pixel_x_ - (0.5 * height) * pixel_y_;
+  lens_x_ = view.lens_radius * right;
+  lens_y_ = view.lens_radius * down;
 }
 
-Ray Camera::ray(double x, double y) const {
-  return {position_, normalize(top_left_ + x * pixel_x_ + y * pixel_y_)};
+Ray Camera::ray(double x, double y, Rng& rng) const {
+  const Vec3 in_focus = top_left_ + x * pixel_x_ + y * pixel_y_;
+  if (!has_lens_) return {position_, normalize(in_focus)};
+  const double radius = std::sqrt(rng.uniform());
+  const Turn turn(rng.uniform());
+  const Vec3 on_lens = (radius * turn.cosine) * lens_x_ + (radius * turn.sine) * lens_y_;
+  return {position_ + on_lens, normalize(in_focus - on_lens)};
 }
 
 }  // namespace sunbeam

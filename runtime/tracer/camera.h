@@ -1,8 +1,9 @@
-// A pinhole camera.
+// A camera with a thin lens, or a pinhole.
 #pragma once
 
 #include "runtime/tracer/ray.h"
 #include "runtime/tracer/scene.h"
+#include "sunbeam/core/rng.h"
 
 namespace sunbeam {
 
@@ -11,13 +12,16 @@ class Camera {
   Camera(const CameraView& view, int width, int height);
 
   // Through the point (x, y) of the picture, in pixels from its top left corner; pixel (i, j) covers
-  // [i, i + 1) x [j, j + 1).
-  Ray ray(double x, double y) const;
+  // [i, i + 1) x [j, j + 1). A lens takes a point on it, uniformly, from `rng`; a pinhole leaves it
+  // untouched.
+  Ray ray(double x, double y, Rng& rng) const;
 
  private:
   Vec3 position_;
-  Vec3 top_left_, pixel_x_,
-      pixel_y_;  // the picture at distance 1: its corner and one pixel to the right and down
+  // The picture at the distance in focus: its corner and one pixel to the right and down.
+  Vec3 top_left_, pixel_x_, pixel_y_;
+  Vec3 lens_x_, lens_y_;  // radii of the lens
+  bool has_lens_;
 };
 
 }  // namespace sunbeam

@@ -188,6 +188,7 @@ RTCRay to_embree(const Ray& ray, float distance) {
 struct EmbreeScene::Impl {
   std::string error;  // the first message of the device; set before it, for its callback writes here
   std::vector<Mesh> light_meshes;
+  std::vector<Sphere> light_spheres;
   std::vector<Surface> surfaces;
   Device device;
   SceneHandle scene;
@@ -204,6 +205,11 @@ void EmbreeScene::Impl::collect(const Scene& source) {
   for (const QuadLight& light : source.quad_lights) {
     light_meshes.push_back(quad_mesh(light.corner, light.edge_u, light.edge_v));
     surfaces.push_back({.mesh = &light_meshes.back(), .light = static_cast<int>(light_meshes.size()) - 1});
+  }
+  light_spheres.reserve(source.sphere_lights.size());
+  for (const SphereLight& light : source.sphere_lights) {
+    light_spheres.push_back({light.center, light.radius});
+    surfaces.push_back({.sphere = &light_spheres.back(), .light = static_cast<int>(surfaces.size())});
   }
   for (std::size_t i = 0; i < source.objects.size(); ++i) {
     const auto& shape = source.objects[i].shape;

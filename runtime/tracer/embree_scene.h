@@ -20,7 +20,7 @@ struct SurfaceHit {
   double distance;  // from the origin of the ray
   double offset;    // a ray that starts this far above `position` does not hit the same surface again
   int object;       // index into Scene::objects, -1 for a light
-  int light;        // index into Scene::quad_lights, -1 for an object
+  int light;        // counts Scene::quad_lights, then sphere_lights; -1 for an object
 };
 
 class EmbreeScene {

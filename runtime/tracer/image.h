@@ -8,6 +8,17 @@
 
 namespace sunbeam {
 
+// Pixels [x0, x1) x [y0, y1) of a picture of width x height, counted from its top left corner.
+struct PixelWindow {
+  int width = 0, height = 0;
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+
+  static PixelWindow whole(int width, int height) { return {width, height, 0, 0, width, height}; }
+  int columns() const { return x1 - x0; }
+  int rows() const { return y1 - y0; }
+  bool operator==(const PixelWindow&) const = default;
+};
+
 struct Image {
   int width = 0, height = 0;
   std::vector<float> rgb;
@@ -19,10 +30,9 @@ struct Image {
 
   bool empty() const { return rgb.empty(); }
 
-  Rgb get(int x, int y) const {
-    const float* pixel = &rgb[index(x, y)];
-    return {pixel[0], pixel[1], pixel[2]};
-  }
+  Rgb get(int x, int y) const { return at(index(x, y) / 3); }
+  // By its place in the rows.
+  Rgb at(std::size_t i) const { return {rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]}; }
   void set(int x, int y, const Rgb& value) {
     float* pixel = &rgb[index(x, y)];
     for (int channel = 0; channel < 3; ++channel) pixel[channel] = static_cast<float>(value[channel]);

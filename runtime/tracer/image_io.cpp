@@ -11,9 +11,11 @@
 #include <fmt/format.h>
 #include <png.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <exception>
+#include <string_view>
 
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/file.h"
@@ -40,6 +42,15 @@ void insert_slices(Imf::FrameBuffer& buffer, const std::array<const char*, 3>& n
   }
 }
 
+void insert_slice(Imf::FrameBuffer& buffer, const std::string& name, const std::vector<float>& values,
+                  int width, const Imath::V2i& min) {
+  const std::size_t row = sizeof(float) * static_cast<std::size_t>(width);
+  char* origin = reinterpret_cast<char*>(const_cast<float*>(values.data())) -
+                 static_cast<std::ptrdiff_t>(sizeof(float)) * min.x -
+                 static_cast<std::ptrdiff_t>(row) * min.y;
+  buffer.insert(name, Imf::Slice(Imf::FLOAT, origin, sizeof(float), row));
+}
+
 bool has_channels(const Imf::Header& header, const std::array<const char*, 3>& names) {
   for (const char* name : names)
     if (!header.channels().findChannel(name)) return false;
@@ -54,13 +65,18 @@ std::string channel_names(const Imf::Header& header) {
 }
 
 std::string exr_bytes(const ExrImage& image) {
-  Imf::Header header(image.mean.width, image.mean.height);
+  const PixelWindow window = image.window.value_or(PixelWindow::whole(image.mean.width, image.mean.height));
+  const Imath::V2i min(window.x0, window.y0);
+  const Imath::Box2i whole({0, 0}, {window.width - 1, window.height - 1});
+  const Imath::Box2i part(min, {window.x1 - 1, window.y1 - 1});
+  Imf::Header header(whole, part);
   header.compression() = Imf::ZIP_COMPRESSION;
   Imf::addChromaticities(header, Imf::Chromaticities());  // the defaults are Rec.709 with D65
   for (const auto& [name, value] : image.attributes) header.insert(name, Imf::StringAttribute(value));
   Imf::FrameBuffer buffer;
-  insert_slices(buffer, kMeanChannels, image.mean, {0, 0});
-  if (!image.variance.empty()) insert_slices(buffer, kVarianceChannels, image.variance, {0, 0});
+  insert_slices(buffer, kMeanChannels, image.mean, min);
+  if (!image.variance.empty()) insert_slices(buffer, kVarianceChannels, image.variance, min);
+  for (const auto& [name, values] : image.layers) insert_slice(buffer, name, values, image.mean.width, min);
   for (auto it = buffer.begin(); it != buffer.end(); ++it)
     header.channels().insert(it.name(), Imf::Channel(Imf::FLOAT));
   Imf::StdOSStream stream;
@@ -70,6 +86,12 @@ std::string exr_bytes(const ExrImage& image) {
     file.writePixels(image.mean.height);
   }  // the table of line offsets is written at the end
   return stream.str();
+}
+
+// The place of a data window in its display window.
+PixelWindow window_in(const Imath::Box2i& whole, const Imath::Box2i& part) {
+  return {whole.max.x - whole.min.x + 1, whole.max.y - whole.min.y + 1, part.min.x - whole.min.x,
+          part.min.y - whole.min.y,      part.max.x - whole.min.x + 1,  part.max.y - whole.min.y + 1};
 }
 
 ExrImage read_channels(const std::string& path) {
@@ -91,6 +113,16 @@ ExrImage read_channels(const std::string& path) {
     image.variance = Image(image.mean.width, image.mean.height);
     insert_slices(buffer, kVarianceChannels, image.variance, window.min);
   }
+  for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
+    const auto is_this = [&](const char* name) { return std::string_view(name) == it.name(); };
+    const bool known = std::any_of(kMeanChannels.begin(), kMeanChannels.end(), is_this) ||
+                       std::any_of(kVarianceChannels.begin(), kVarianceChannels.end(), is_this);
+    if (known || it.channel().xSampling != 1 || it.channel().ySampling != 1) continue;
+    auto& values = image.layers[it.name()];
+    values.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    insert_slice(buffer, it.name(), values, image.mean.width, window.min);
+  }
+  image.window = window_in(header.displayWindow(), window);
   file.setFrameBuffer(buffer);
   file.readPixels(window.min.y, window.max.y);
   for (auto it = header.begin(); it != header.end(); ++it)
@@ -127,6 +159,23 @@ std::vector<png_byte> srgb_pixels(const Image& image, ClipAccount& account) {
 }
 
 }  // namespace
+
+void insert_layers(ExrImage& exr, const std::string& name, const std::string& axes, const Image& image) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    auto& layer = exr.layers[name + "." + axes[axis]];
+    for (std::size_t i = axis; i < image.rgb.size(); i += 3) layer.push_back(image.rgb[i]);
+  }
+}
+
+Image extract_layers(const ExrImage& exr, const std::string& name, const std::string& axes) {
+  Image image(exr.mean.width, exr.mean.height);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto layer = exr.layers.find(name + "." + axes[axis]);
+    if (layer == exr.layers.end()) return {};
+    for (std::size_t i = 0; i < layer->second.size(); ++i) image.rgb[3 * i + axis] = layer->second[i];
+  }
+  return image;
+}
 
 void write_exr(const std::string& path, const ExrImage& image) {
   require_pixels(path, image.mean);

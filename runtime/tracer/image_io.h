@@ -3,7 +3,9 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "runtime/tracer/image.h"
 #include "sunbeam/core/color_space.h"
@@ -14,13 +16,24 @@ struct ExrImage {
   Image mean;
   Image variance;  // of the pixel mean; empty if the file has none
   std::map<std::string, std::string> attributes;
+  // Further channels by name, each of as many values as there are pixels, rows from the top.
+  std::map<std::string, std::vector<float>> layers{};
+  // Where the pixels lie (the data window) in the whole picture (the display window); all of it if not given.
+  std::optional<PixelWindow> window{};
 };
 
-// Channels R, G, B and, unless `variance` is empty, variance.R, variance.G, variance.B; all 32-bit float,
-// linear Rec.709 (and the header says so), signs kept. `attributes` become string attributes of the header.
+// A picture of three layers: NAME.FIRST, NAME.SECOND, NAME.THIRD of `axes`, such as albedo.R or normal.X.
+void insert_layers(ExrImage& exr, const std::string& name, const std::string& axes, const Image& image);
+// The other way round; empty if one is missing.
+Image extract_layers(const ExrImage& exr, const std::string& name, const std::string& axes);
+
+// Channels R, G, B, unless `variance` is empty variance.R, variance.G, variance.B, and the layers; all 32-bit
+// float, linear Rec.709 (and the header says so), signs kept. `attributes` become string attributes of the
+// header.
 void write_exr(const std::string& path, const ExrImage& image);
 
-// Reads R, G, B of any pixel type as float, the variance layer where there is one, and all string attributes.
+// Reads R, G, B of any pixel type as float, the variance where there is one, all other channels into layers,
+// all string attributes, and the window, shifted so that the whole picture begins at 0, 0.
 ExrImage read_exr(const std::string& path);
 
 // 8-bit sRGB after display_color() on every pixel. Negative components, which a PNG cannot hold, are raised

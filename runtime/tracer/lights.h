@@ -1,10 +1,11 @@
-// All sources of light of a scene: quads, points and the environment.
+// All sources of light of a scene: quads, spheres, points, far-off ones and the environment.
 //
 // A sample picks one of the sources that can be sampled (all but a constant environment) UNIFORMLY; every
 // density below has that choice in it.
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "runtime/tracer/environment.h"
 #include "runtime/tracer/scene.h"
@@ -14,11 +15,11 @@ namespace sunbeam {
 
 struct LightSample {
   Vec3 wi;          // unit, world space, from the receiver towards the light
-  double distance;  // infinite for the environment
-  Rgb radiance;     // arriving from wi if nothing is in between; for a point light its irradiance at normal
+  double distance;  // infinite for what is far off
+  Rgb radiance;     // arriving from wi if nothing is in between; of a Dirac light its irradiance at normal
                     // incidence
-  double pdf;       // per solid angle (1/sr), > 0; for a point light the chance of choosing it
-  bool is_dirac;    // a point light: no other technique can find it
+  double pdf;       // per solid angle (1/sr), > 0; of a Dirac light the chance of choosing it
+  bool is_dirac;    // a point light, or a far-off one without size: no other technique can find it
 };
 
 // What a ray sees when it meets a light, and the density with which sample() would have chosen that
@@ -36,19 +37,41 @@ class Lights {
   // Empty if there is nothing to sample, or if the light chosen does not shine towards `from`.
   std::optional<LightSample> sample(const Vec3& from, Rng& rng) const;
 
-  // Of a ray with unit `direction` that leaves the scene.
-  Emission environment(const Vec3& direction) const;
-  // Of a ray with unit `direction` that meets quad light `light` after `distance`. Black on the back side.
-  Emission quad(int light, const Vec3& direction, double distance) const;
+  // Of a ray from `from` with unit `direction` that meets light `light` (SurfaceHit::light) after `distance`.
+  // Black on the back side.
+  Emission surface(int light, const Vec3& from, const Vec3& direction, double distance) const;
+
+  // Visits the Emission of everything that a ray with unit `direction` sees when it leaves the scene.
+  template <class Visit>
+  void for_each_far_off(const Vec3& direction, Visit visit) const {
+    visit(environment(direction));
+    for (const Disc& disc : discs_)
+      if (dot(direction, disc.towards) >= disc.cos_radius) visit(Emission{disc.radiance, disc.pdf});
+  }
 
  private:
-  std::optional<LightSample> sample_quad(std::size_t light, const Vec3& from, Rng& rng) const;
-  std::optional<LightSample> sample_point(std::size_t light, const Vec3& from) const;
+  // A directional light of some angular size.
+  struct Disc {
+    Vec3 towards;
+    double cos_radius;
+    Rgb radiance;
+    double pdf;  // its choice included
+  };
+
+  Emission environment(const Vec3& direction) const;
+  Emission quad(const QuadLight& light, const Vec3& direction, double distance) const;
+  Emission sphere(const SphereLight& light, const Vec3& from) const;
+  std::optional<LightSample> sample_quad(const QuadLight& light, const Vec3& from, Rng& rng) const;
+  std::optional<LightSample> sample_sphere(const SphereLight& light, const Vec3& from, Rng& rng) const;
+  std::optional<LightSample> sample_point(const PointLight& light, const Vec3& from) const;
+  std::optional<LightSample> sample_directional(std::size_t light, Rng& rng) const;
   std::optional<LightSample> sample_environment(Rng& rng) const;
 
   const Scene& scene_;
   Environment environment_;
-  std::size_t count_;  // of sources that can be sampled
+  std::vector<Disc>
+      discs_;     // of the directional lights; cos_radius 2, which nothing meets, of those without size
+  double count_;  // of sources that can be sampled
 };
 
 }  // namespace sunbeam

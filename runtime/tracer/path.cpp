@@ -7,8 +7,6 @@
 namespace sunbeam {
 namespace {
 
-constexpr int kFreeBounces = 3;  // before Russian roulette
-
 // MIS weight of the technique with density `pdf` against one other.
 double power_heuristic(double pdf, double other) {
   return pdf <= 0 ? 0 : 1 / (1 + square(other / pdf));  // as a ratio, for squares overflow
@@ -39,9 +37,20 @@ struct PathTracer::Vertex {
   Vec3 wo;                          // local
   double offset;
   const Bsdf* bsdf;
+  double film_thickness_nm;
 
   bool is_above(const Vec3& world) const { return dot(world, geometric_normal) > 0; }
-  Ray leave(const Vec3& world) const { return {position + offset * geometric_normal, world}; }
+  FirstHit as_first_hit(double distance) const {
+    return {.on_surface = true,
+            .albedo = {},  // known when the BSDF is sampled
+            .shading_normal = frame.normal,
+            .geometric_normal = geometric_normal,
+            .depth = distance,
+            .film_thickness_nm = film_thickness_nm};
+  }
+  // Where rays start, off the surface.
+  Vec3 origin() const { return position + offset * geometric_normal; }
+  Ray leave(const Vec3& world) const { return {origin(), world}; }
 };
 
 PathTracer::PathTracer(const Scene& scene, const EmbreeScene& geometry, const Lights& lights,
@@ -56,22 +65,33 @@ PathTracer::Vertex PathTracer::make_vertex(const Ray& ray, const SurfaceHit& hit
   const Vec3 tangent =
       turned_tangent(hit.tangent, hit.shading_normal, scene_.materials[material].tangent_rotation_deg);
   const Frame frame = Frame::from_normal_and_tangent(bend_towards(side * hit.shading_normal, wo), tangent);
-  return {hit.position, side * hit.geometric_normal, frame, frame.to_local(wo), hit.offset, bsdfs_[material]};
+  return {hit.position,
+          side * hit.geometric_normal,
+          frame,
+          frame.to_local(wo),
+          hit.offset,
+          bsdfs_[material],
+          scene_.materials[material].film_thickness_nm.value_or(0)};
 }
 
 // What the end of `ray` emits, weighted by MIS if the ray was drawn with density `bsdf_pdf`. Without one
 // (from the camera or from a Dirac lobe) no light sample could have found the same path, and all of it
 // counts.
 Rgb PathTracer::emission(const Ray& ray, const MaybeHit& hit, std::optional<double> bsdf_pdf) const {
-  if (hit && hit->light < 0) return {};
-  const Emission light =
-      hit ? lights_.quad(hit->light, ray.direction, hit->distance) : lights_.environment(ray.direction);
-  if (!bsdf_pdf || light.pdf <= 0) return light.radiance;
-  return light.radiance * power_heuristic(*bsdf_pdf, light.pdf);
+  Rgb sum;
+  const auto add = [&](const Emission& light) {
+    sum +=
+        bsdf_pdf && light.pdf > 0 ? light.radiance * power_heuristic(*bsdf_pdf, light.pdf) : light.radiance;
+  };
+  if (!hit)
+    lights_.for_each_far_off(ray.direction, add);
+  else if (hit->light >= 0)
+    add(lights_.surface(hit->light, ray.origin, ray.direction, hit->distance));
+  return sum;
 }
 
 Rgb PathTracer::direct_light(const Vertex& vertex, Rng& rng, PathCounts& counts) const {
-  const auto light = lights_.sample(vertex.position, rng);
+  const auto light = lights_.sample(vertex.origin(), rng);
   if (!light || !vertex.is_above(light->wi)) return {};
   const Vec3 wi = vertex.frame.to_local(light->wi);
   if (wi.z <= 0) return {};
@@ -84,7 +104,7 @@ Rgb PathTracer::direct_light(const Vertex& vertex, Rng& rng, PathCounts& counts)
   return f * light->radiance * (wi.z * weight / light->pdf);
 }
 
-Rgb PathTracer::radiance(Ray ray, Rng& rng, PathCounts& counts) const {
+Rgb PathTracer::radiance(Ray ray, Rng& rng, PathCounts& counts, FirstHit& first) const {
   Rgb result, throughput(1);
   std::optional<double> bsdf_pdf;
   for (int bounce = 0;; ++bounce) {
@@ -95,15 +115,17 @@ Rgb PathTracer::radiance(Ray ray, Rng& rng, PathCounts& counts) const {
 
     ++counts.vertices;
     const Vertex vertex = make_vertex(ray, *hit);
+    if (bounce == 0) first = vertex.as_first_hit(hit->distance);
     result += throughput * direct_light(vertex, rng, counts);
     const auto sample = vertex.bsdf->sample(vertex.wo, rng);
     if (!sample) return result;
     throughput *= sample->throughput;
+    if (bounce == 0) first.albedo = sample->throughput;
     if (!is_finite(sample->wi) || !is_finite(throughput))
       return Rgb(std::numeric_limits<double>::quiet_NaN());
     const Vec3 wi = vertex.frame.to_world(sample->wi);
     if (sample->wi.z <= 0 || !vertex.is_above(wi)) return result;
-    if (bounce >= kFreeBounces) {
+    if (bounce >= scene_.render.roulette_after) {
       // Colours outside Rec.709 have negative components, which weigh as much.
       const double survival =
           std::min(1.0, max_component(transform(throughput, [](double x) { return std::abs(x); })));

@@ -13,6 +13,7 @@
 
 #include "runtime/tracer/embree_scene.h"
 #include "runtime/tracer/lights.h"
+#include "runtime/tracer/pixel_sums.h"
 #include "runtime/tracer/ray.h"
 #include "sunbeam/bsdf.h"
 #include "sunbeam/core/rng.h"
@@ -31,8 +32,8 @@ class PathTracer {
              std::span<const Bsdf* const> bsdfs);
 
   // One estimate of the radiance that arrives along `ray`; not finite if a BSDF returned something not
-  // finite.
-  Rgb radiance(Ray ray, Rng& rng, PathCounts& counts) const;
+  // finite. `first` is filled in.
+  Rgb radiance(Ray ray, Rng& rng, PathCounts& counts, FirstHit& first) const;
 
  private:
   struct Vertex;

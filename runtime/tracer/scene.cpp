@@ -32,7 +32,7 @@ Vec3 point(const ConfigTable& table, std::string_view key, std::optional<Vec3> f
   return value;
 }
 
-Vec3 direction(const ConfigTable& table, std::string_view key, const Vec3& fallback) {
+Vec3 direction(const ConfigTable& table, std::string_view key, std::optional<Vec3> fallback = {}) {
   const Vec3 value = point(table, key, fallback);
   if (length(value) < kLength.low) table.fail(key, "found a vector of length 0; allowed: any other");
   return normalize(value);
@@ -51,6 +51,11 @@ CameraView read_camera(const ConfigTable& table) {
     table.fail("look_at", "is the same point as position; allowed: any other point");
   if (sine_between(camera.look_at - camera.position, camera.up) < 1e-6)
     table.fail("up", "is parallel to the view from position to look_at; allowed: any other direction");
+  if (table.choice("fov_axis", {"vertical", "horizontal"}, 0) == 1)
+    camera.fov_axis = CameraView::FovAxis::horizontal;
+  camera.lens_radius = table.number("lens_radius", {0, kLength.high}, 0.0);
+  camera.inside = table.boolean("inside", false);
+  camera.focus_distance = table.number("focus_distance", kLength, length(camera.look_at - camera.position));
   return camera;
 }
 
@@ -60,6 +65,7 @@ RenderDefaults read_render(const ConfigTable& table) {
   render.height = table.integer("height", 1, 16384, render.height);
   render.spp = table.integer("spp", 1, 1 << 24, render.spp);
   render.max_bounces = table.integer("max_bounces", 1, 10000, render.max_bounces);
+  render.roulette_after = table.integer("roulette_after", 0, 10000, render.roulette_after);
   return render;
 }
 
@@ -111,11 +117,29 @@ QuadLight read_quad_light(const ConfigTable& table) {
   return light;
 }
 
+SphereLight read_sphere_light(const ConfigTable& table) {
+  return {point(table, "center"), table.number("radius", kLength), table.rgb("radiance", kEmission)};
+}
+
+DirectionalLight read_directional_light(const ConfigTable& table) {
+  return {direction(table, "towards"), table.rgb("irradiance", kEmission),
+          table.number("angle_deg", {0, 90}, 0.0)};
+}
+
 void read_light(const ConfigTable& table, Scene& scene) {
-  if (table.choice("type", {"quad", "point"}) == 0)
-    scene.quad_lights.push_back(read_quad_light(table));
-  else
-    scene.point_lights.push_back({point(table, "position"), table.rgb("intensity", kEmission)});
+  switch (table.choice("type", {"quad", "sphere", "point", "directional"})) {
+    case 0:
+      scene.quad_lights.push_back(read_quad_light(table));
+      break;
+    case 1:
+      scene.sphere_lights.push_back(read_sphere_light(table));
+      break;
+    case 2:
+      scene.point_lights.push_back({point(table, "position"), table.rgb("intensity", kEmission)});
+      break;
+    default:
+      scene.directional_lights.push_back(read_directional_light(table));
+  }
 }
 
 std::optional<double> optional_number(const ConfigTable& table, std::string_view key, double low) {
@@ -162,7 +186,7 @@ Mesh read_torus(const ConfigTable& table) {
 
 Mesh read_plane(const ConfigTable& table) {
   const Vec3 center = point(table, "center", Vec3{});
-  const Frame frame = Frame::from_normal(direction(table, "normal", {0, 0, 1}));
+  const Frame frame = Frame::from_normal(direction(table, "normal", Vec3{0, 0, 1}));
   const double half_size = table.number("half_size", kLength, 50.0);
   const Vec3 u = 2 * half_size * frame.tangent, v = 2 * half_size * frame.bitangent;
   return quad_mesh(center - 0.5 * (u + v), u, v);

@@ -17,14 +17,20 @@ namespace sunbeam {
 struct CameraView {
   Vec3 position, look_at;
   Vec3 up{0, 0, 1};     // not parallel to the view
-  double fov_deg = 40;  // VERTICAL angle of view, (0, 180)
+  double fov_deg = 40;  // angle of view, (0, 180)
+  enum class FovAxis { vertical, horizontal } fov_axis = FovAxis::vertical;
+  // A thin lens: points at `focus_distance` along the view are sharp. Radius 0 is a pinhole.
+  double lens_radius = 0;
+  double focus_distance = 1;
+  bool inside = false;  // a position inside a closed object is wanted, not a mistake
 };
 
 // What RenderSettings falls back to.
 struct RenderDefaults {
   int width = 640, height = 360;
-  int spp = 64;         // samples per pixel
-  int max_bounces = 8;  // scattering events of a path; 1 = direct light only
+  int spp = 64;            // samples per pixel
+  int max_bounces = 8;     // scattering events of a path; 1 = direct light only
+  int roulette_after = 3;  // scattering events before Russian roulette; max_bounces or more: never
 };
 
 // Radiance from infinity. `map` is a lat-long picture seen from inside, unmirrored: rows run from +z (top) to
@@ -40,9 +46,23 @@ struct QuadLight {
   Rgb radiance;
 };
 
+// Emits outwards, the same radiance everywhere.
+struct SphereLight {
+  Vec3 center;
+  double radius = 1;
+  Rgb radiance;
+};
+
 struct PointLight {
   Vec3 position;
   Rgb intensity;  // W/sr
+};
+
+// The sun: far off, a disc of uniform radiance that is seen in the sky; without size it cannot be seen.
+struct DirectionalLight {
+  Vec3 towards;          // unit, from the scene to the light
+  Rgb irradiance;        // at normal incidence
+  double angle_deg = 0;  // diameter, [0, 90]
 };
 
 struct SceneMaterial {
@@ -74,7 +94,9 @@ struct Scene {
   RenderDefaults render;
   EnvironmentSource environment;
   std::vector<QuadLight> quad_lights;
+  std::vector<SphereLight> sphere_lights;
   std::vector<PointLight> point_lights;
+  std::vector<DirectionalLight> directional_lights;
   std::vector<SceneMaterial> materials;
   std::vector<SceneObject> objects;
 };

@@ -106,30 +106,65 @@ TEST(Environment, BlackMapIsFinite) {
   EXPECT_EQ(environment.radiance(direction), Rgb());
 }
 
-TEST(Lights, DensityOfASampleIsTheDensityAFoundRayWouldReport) {
+Scene every_light() {
   Scene scene;
   scene.quad_lights.push_back({{-1, -1, 2}, {0, 2, 0}, {2, 0, 0}, Rgb(3)});
+  scene.sphere_lights.push_back({{3, 0, 1}, 0.5, Rgb(2)});
   scene.point_lights.push_back({{0, 0, 5}, Rgb(1)});
+  scene.directional_lights.push_back({normalize(Vec3{0, -1, 1}), Rgb(1), 10});
   scene.environment = uneven_map();
+  return scene;
+}
+
+// What a ray along the sample would see, by the density that it reports.
+Emission found_again(const Lights& lights, const LightSample& sample, const Vec3& from, int light) {
+  if (light >= 0) return lights.surface(light, from, sample.wi, sample.distance);
+  std::vector<Emission> seen;
+  lights.for_each_far_off(sample.wi, [&](const Emission& emission) { seen.push_back(emission); });
+  return light == -1 ? seen.front() : seen.back();
+}
+
+TEST(Lights, DensityOfASampleIsTheDensityAFoundRayWouldReport) {
+  const Scene scene = every_light();
   const Lights lights(scene);
+  const Vec3 from = {0.2, 0.1, 0};
   Rng rng(3, 4);
-  int seen[3] = {};
-  for (int i = 0; i < 3000; ++i) {
+  int seen[5] = {};
+  for (int i = 0; i < 5000; ++i) {
+    const auto sample = lights.sample(from, rng);
+    ASSERT_TRUE(sample);
+    const bool in_sun = dot(sample->wi, scene.directional_lights[0].towards) > std::cos(5 * kPi / 180);
+    const int kind = sample->is_dirac                      ? 0
+                     : std::isinf(sample->distance)        ? (sample->radiance.r > 30 && in_sun ? 1 : 2)
+                     : sample->wi.x * sample->distance > 2 ? 3
+                                                           : 4;
+    ++seen[kind];
+    if (kind == 0) {
+      EXPECT_DOUBLE_EQ(sample->pdf, 1.0 / 5);
+      continue;
+    }
+    const Emission emission = found_again(lights, *sample, from, kind == 1 ? -2 : kind == 2 ? -1 : kind == 3);
+    EXPECT_DOUBLE_EQ(sample->pdf, emission.pdf);
+    EXPECT_EQ(sample->radiance, emission.radiance);
+  }
+  // Each fifth of 5000: 1000 with standard deviation 28; +-160 has a false alarm of 1e-8.
+  for (const int count : seen) EXPECT_NEAR(count, 1000, 160);
+}
+
+TEST(Lights, SamplesOfASphereLieOnItsNearSide) {
+  Scene scene;
+  scene.sphere_lights.push_back({{3, 1, 2}, 0.5, Rgb(2)});
+  const Lights lights(scene);
+  Rng rng(5, 6);
+  for (int i = 0; i < 1000; ++i) {
     const auto sample = lights.sample({0.2, 0.1, 0}, rng);
     ASSERT_TRUE(sample);
-    if (sample->is_dirac) {
-      ++seen[0];
-      EXPECT_DOUBLE_EQ(sample->pdf, 1.0 / 3);
-    } else if (std::isinf(sample->distance)) {
-      ++seen[1];
-      EXPECT_DOUBLE_EQ(sample->pdf, lights.environment(sample->wi).pdf);
-    } else {
-      ++seen[2];
-      EXPECT_DOUBLE_EQ(sample->pdf, lights.quad(0, sample->wi, sample->distance).pdf);
-    }
+    const Vec3 point = Vec3{0.2, 0.1, 0} + sample->distance * sample->wi;
+    const Vec3 normal = 2 * (point - scene.sphere_lights[0].center);
+    EXPECT_NEAR(length(normal), 1, 1e-9);
+    EXPECT_LE(dot(normal, sample->wi), 1e-7);
   }
-  // Each third of 3000: 1000 with standard deviation 26; +-150 has a false alarm of 1e-8.
-  for (const int count : seen) EXPECT_NEAR(count, 1000, 150);
+  EXPECT_FALSE(lights.sample({3, 1, 2.1}, rng));  // no light inside
 }
 
 }  // namespace

@@ -115,18 +115,154 @@ TEST(Render, SamplesThatAreNotFiniteAreCountedAndBlack) {
 }
 
 TEST(Render, ExceptionsReachTheCaller) {
-  const auto fail = [](double) { throw std::runtime_error("stop"); };
+  const auto fail = [](const RenderResult&) -> bool { throw std::runtime_error("stop"); };
   EXPECT_THROW(render_with(small_scene(), Broken(true), {}), std::domain_error);
-  EXPECT_THROW(render_with(small_scene(), Lambert(Rgb(0.5)), {.threads = 2, .progress = fail}),
+  EXPECT_THROW(render_with(small_scene(), Lambert(Rgb(0.5)), {.threads = 2, .monitor = fail}),
                std::runtime_error);
 }
 
-TEST(Render, ProgressRisesToOne) {
+TEST(Render, MonitorSeesTheWorkRiseToItsEnd) {
   std::vector<double> fractions;
-  render_with(small_scene(), Lambert(Rgb(0.5)), {.progress = [&](double f) { fractions.push_back(f); }});
-  ASSERT_EQ(fractions.size(), 4u * 3);  // tiles of 16 x 16
+  const auto note = [&](const RenderResult& so_far) {
+    fractions.push_back(so_far.stats.fraction);
+    return true;
+  };
+  render_with(small_scene(), Lambert(Rgb(0.5)), {.monitor = note});
+  ASSERT_GE(fractions.size(), 7u * 5);  // tiles of 8 x 8, one pass at least
   for (std::size_t i = 1; i < fractions.size(); ++i) EXPECT_GT(fractions[i], fractions[i - 1]);
   EXPECT_EQ(fractions.back(), 1);
+}
+
+TEST(Render, MonitorStopsAndThePictureSoFarIsWhole) {
+  int calls = 0;
+  const auto stop_later = [&](const RenderResult&) { return ++calls < 60; };  // in the second pass
+  const RenderResult result =
+      render_with(small_scene(), Lambert(Rgb(0.5)), {.spp = 1000, .monitor = stop_later});
+  EXPECT_TRUE(result.stats.stopped);
+  EXPECT_LT(result.stats.fraction, 1);
+  for (const float count : result.sample_count) EXPECT_GE(count, 1);
+}
+
+// A crop holds the pixels of the whole picture.
+TEST(Render, CropIsAPartOfTheWhole) {
+  const Scene scene = small_scene();
+  const RenderResult whole = render_with(scene, Lambert(Rgb(0.5)), {.first_hits = true});
+  const RenderResult part =
+      render_with(scene, Lambert(Rgb(0.5)),
+                  {.crop = PixelWindow{.x0 = 11, .y0 = 3, .x1 = 40, .y1 = 20}, .first_hits = true});
+  ASSERT_EQ(part.mean.width, 29);
+  ASSERT_EQ(part.mean.height, 17);
+  for (int y = 0; y < 17; ++y)
+    for (int x = 0; x < 29; ++x) {
+      ASSERT_EQ(part.mean.get(x, y), whole.mean.get(x + 11, y + 3));
+      ASSERT_EQ(part.variance.get(x, y), whole.variance.get(x + 11, y + 3));
+      ASSERT_EQ(part.first_hits->shading_normal.get(x, y),
+                whole.first_hits->shading_normal.get(x + 11, y + 3));
+    }
+}
+
+TEST(Render, CropOutsideThePictureIsRefused) {
+  for (const PixelWindow crop :
+       {PixelWindow{.x0 = 0, .y0 = 0, .x1 = 51, .y1 = 10}, PixelWindow{.x0 = 5, .y0 = 0, .x1 = 5, .y1 = 10},
+        PixelWindow{.x0 = -1, .y0 = 0, .x1 = 5, .y1 = 10}})
+    EXPECT_NE(error_of([&] { render_with(small_scene(), Lambert(Rgb(0.5)), {.crop = crop}); }).find("crop"),
+              std::string::npos);
+}
+
+// The samples of a resumed picture are those of an uninterrupted one; only rounding to float comes between.
+TEST(Render, ResumedPictureEqualsTheUninterruptedOne) {
+  const Scene scene = small_scene();
+  const RenderResult first = render_with(scene, Lambert(Rgb(0.5)), {.spp = 3, .first_hits = true});
+  const RenderResult resumed =
+      render_with(scene, Lambert(Rgb(0.5)), {.spp = 10, .first_hits = true, .resume = &first});
+  const RenderResult whole = render_with(scene, Lambert(Rgb(0.5)), {.spp = 10, .first_hits = true});
+  EXPECT_EQ(resumed.stats.samples, 50u * 35 * 7);
+  EXPECT_EQ(resumed.sample_count, whole.sample_count);
+  for (std::size_t i = 0; i < whole.mean.rgb.size(); ++i) {
+    ASSERT_NEAR(resumed.mean.rgb[i], whole.mean.rgb[i], 1e-5 * (1 + whole.mean.rgb[i]));
+    ASSERT_NEAR(resumed.variance.rgb[i], whole.variance.rgb[i], 1e-4 * (1e-3 + whole.variance.rgb[i]));
+    ASSERT_NEAR(resumed.first_hits->albedo.rgb[i], whole.first_hits->albedo.rgb[i], 1e-5);
+  }
+}
+
+TEST(Render, TimeLimitEndsTheRenderWithEveryPixelSampled) {
+  const RenderResult result = render_with(small_scene(), Lambert(Rgb(0.5)), {.spp = 1 << 24, .seconds = 0.2});
+  EXPECT_FALSE(result.stats.stopped);
+  EXPECT_LT(result.stats.seconds, 2);  // a busy machine may be late
+  for (const float count : result.sample_count) EXPECT_GE(count, 1);
+}
+
+// Noise asked for is noise got: the standard error over independent pictures, not the one each claims.
+TEST(Render, NoiseLimitIsMet) {
+  const Scene scene = small_scene();
+  constexpr int kRuns = 24;
+  constexpr double kNoise = 0.05;
+  std::vector<double> sum(50 * 35 * 3), squares(sum.size());
+  double brightness = 0, samples = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    const RenderResult result = render_with(
+        scene, Lambert(Rgb(0.5)), {.spp = 1 << 14, .seed = static_cast<std::uint64_t>(run), .noise = kNoise});
+    samples += static_cast<double>(result.stats.samples) / kRuns;
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      sum[i] += result.mean.rgb[i];
+      squares[i] += square(result.mean.rgb[i]);
+    }
+  }
+  double variance = 0;
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    brightness += sum[i] / kRuns / static_cast<double>(sum.size());
+    variance += (squares[i] - square(sum[i]) / kRuns) / (kRuns - 1) / static_cast<double>(sum.size());
+  }
+  EXPECT_LT(std::sqrt(variance), 1.1 * kNoise * brightness);  // 10 % = 13 sigma of this estimate
+  EXPECT_LT(samples, 50 * 35 * 4096.0);                       // and stopped far below the limit
+}
+
+TEST(Render, NoiseLimitDoesNotDependOnThreads) {
+  const auto samples_of = [](int threads) {
+    return render_with(small_scene(), Lambert(Rgb(0.5)), {.spp = 256, .threads = threads, .noise = 0.1})
+        .sample_count;
+  };
+  EXPECT_EQ(samples_of(1), samples_of(3));
+}
+
+TEST(Render, FirstHitsOfAPlane) {
+  const Scene scene = scene_from(R"(
+[camera]
+position = [0, 0, 2]
+look_at = [0, 0, 0]
+up = [0, 1, 0]
+fov_deg = 1
+[render]
+width = 8
+height = 8
+spp = 4
+[[material]]
+name = "m"
+type = "diffuse"
+albedo = [0.25, 0.5, 0.75]
+[[object]]
+type = "plane"
+material = "m"
+)");
+  const RenderResult result = render_with(scene, Lambert({0.25, 0.5, 0.75}), {.first_hits = true});
+  const FirstHits& first = *result.first_hits;
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x) {
+      EXPECT_EQ(first.albedo.get(x, y), Rgb(0.25, 0.5, 0.75));
+      EXPECT_EQ(first.shading_normal.get(x, y), Rgb(0, 0, 1));
+      EXPECT_EQ(first.geometric_normal.get(x, y), Rgb(0, 0, 1));
+      EXPECT_NEAR(first.depth[static_cast<std::size_t>(8 * y + x)], 2, 1e-3);
+    }
+}
+
+TEST(Render, CameraInsideAnObjectIsRefusedUnlessWanted) {
+  Scene scene = small_scene();
+  scene.objects.push_back({Sphere{scene.camera.position, 0.1}, 0});
+  const std::string message = error_of([&] { render_with(scene, Lambert(Rgb(0.5)), {}); });
+  EXPECT_NE(message.find("inside object " + std::to_string(scene.objects.size())), std::string::npos)
+      << message;
+  scene.camera.inside = true;
+  EXPECT_EQ(error_of([&] { render_with(scene, Lambert(Rgb(0.5)), {}); }), "");
 }
 
 TEST(Render, BadSettingsAreRefused) {

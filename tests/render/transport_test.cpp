@@ -26,7 +26,7 @@ albedo = 0.5
 [[object]]
 type = "plane"
 material = "grey"
-half_size = 20
+half_size = 2
 )";
 
 // 2 x 2 at height 1, radiance 2, facing down.
@@ -138,6 +138,34 @@ TEST(Transport, PointLightFallsOffWithTheInverseSquare) {
   EXPECT_NEAR(radiance_at("[0, 1.7320508, 1]"), kInvPi / 2, 1e-3 * kInvPi);
 }
 
+// Any technique alone, and MIS of both, give the closed form.
+void expect_radiance(const std::string& light, double expected) {
+  const Scene scene = scene_from(kPlane + light);
+  for (const double mis_pdf : {1e-20, 0.3, 1e20}) {
+    const Estimate estimate =
+        grey_estimate(render_with(scene, LambertWithMisPdf(0.5, mis_pdf), {.spp = 20000}));
+    EXPECT_NEAR(estimate.mean, expected, 5 * estimate.standard_error + 1e-5) << light << mis_pdf;  // 6e-7
+    EXPECT_LT(estimate.standard_error, 0.02 * expected) << light << mis_pdf;
+  }
+}
+
+TEST(Transport, SphereLightMatchesItsConfigurationFactor) {
+  // Fully above the horizon: irradiance pi L (R / d)^2 cos. Here R / d = 0.5, cos = 0.8.
+  expect_radiance("[[light]]\ntype = 'sphere'\nradiance = 3\nradius = 1\ncenter = [-1.2, 0, 1.6]\n",
+                  0.5 * 3 * 0.25 * 0.8);
+}
+
+TEST(Transport, DirectionalLightGivesItsIrradianceWhateverItsSize) {
+  // Irradiance 5 at normal incidence, at 60 degrees: exact for a disc, too, while all of it is above.
+  expect_radiance(
+      "[[light]]\ntype = 'directional'\nirradiance = 5\nangle_deg = 30\ntowards = [0, 1.7320508, 1]\n",
+      0.5 * kInvPi * 5 * 0.5);
+  const Scene point =
+      scene_from(kPlane + "[[light]]\ntype = 'directional'\nirradiance = 5\ntowards = [0, 1.7320508, 1]\n");
+  EXPECT_NEAR(grey_estimate(render_with(point, Lambert(Rgb(0.5)), {.spp = 4})).mean, 0.5 * kInvPi * 5 * 0.5,
+              1e-6);
+}
+
 TEST(Transport, LightsAddUp) {
   const Scene scene =
       scene_from(kPlane + kQuadLight + "[[light]]\ntype = 'point'\nintensity = 8\nposition = [0, -2, 0.5]\n");
@@ -246,6 +274,7 @@ TEST(Transport, BouncesAreCountedAndRussianRouletteKeepsTheMean) {
       [camera]
       position = [0, -0.5, 0]
       look_at = [0, -1, 0]
+      inside = true
       [[light]]
       type = "point"
       position = [0, 0, 0]

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "bake/compare/flip.h"
+
 namespace sunbeam {
 
 struct BakeOptions {
@@ -67,5 +69,15 @@ struct RenderOptions {
   std::uint64_t seed = 1;
 };
 int run_render(const RenderOptions& options);
+
+struct CompareOptions {
+  std::string test, reference;
+  std::string png;  // false-colour FLIP; empty: none
+  bool json = false;
+  double pixels_per_degree = kDefaultPixelsPerDegree;
+  // Exit code 1 above these.
+  std::optional<double> max_rmse, max_relmse, max_flip, max_bias, max_bias_z;
+};
+int run_compare(const CompareOptions& options);
 
 }  // namespace sunbeam

@@ -13,6 +13,7 @@
 #include "bake/version.h"
 #include "runtime/config/config.h"
 #include "sunbeam/core/error.h"
+#include "sunbeam/core/text.h"
 
 namespace {
 
@@ -27,6 +28,17 @@ CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
         const bool parsed = result.ec == std::errc() && result.ptr == text.data() + text.size();
         if (parsed && value >= low && value <= high) return std::string();
         return fmt::format("found '{}'; allowed: a whole number, {} to {}", text, low, high);
+      },
+      "");
+}
+
+// CLI11's own checks would let "nan" pass.
+CLI::Validator number(double low, double high) {
+  return CLI::Validator(
+      [low, high](std::string& text) {
+        double value = 0;
+        if (parse_number(text, value) && value >= low && value <= high) return std::string();
+        return fmt::format("found '{}'; allowed: a number, {:g} to {:g}", text, low, high);
       },
       "");
 }
@@ -154,6 +166,26 @@ void add_render(CLI::App& app, RenderOptions& o, int& exit_code) {
   command->callback([&] { exit_code = run_render(o); });
 }
 
+void add_compare(CLI::App& app, CompareOptions& o, int& exit_code) {
+  CLI::App* command = add_command(app, "compare", "Measure how far a rendered image is from a reference",
+                                  "sunbeam compare table.exr live.exr --max-bias-z 4 --png flip.png");
+  command->add_option("test", o.test, "Image to judge (.exr)")->required();
+  command->add_option("reference", o.reference, "Image to hold it against (.exr)")->required();
+  command->add_option("--png", o.png, "Write FLIP of every pixel to this picture (.png): black 0, yellow 1");
+  command->add_flag("--json", o.json, "As JSON");
+  command->add_option("--pixels-per-degree", o.pixels_per_degree, "Of the observer of FLIP; default: 67")
+      ->check(number(1, kMostPixelsPerDegree));
+  const auto add_limit = [&](const char* name, std::optional<double>& most, const char* what) {
+    command->add_option(name, most, what)->check(number(0, std::numeric_limits<double>::max()));
+  };
+  add_limit("--max-rmse", o.max_rmse, "Exit with 1 if RMSE is above this");
+  add_limit("--max-relmse", o.max_relmse, "Exit with 1 if relMSE is above this");
+  add_limit("--max-flip", o.max_flip, "Exit with 1 if mean FLIP is above this");
+  add_limit("--max-bias", o.max_bias, "Exit with 1 if the mean difference of a channel is above this");
+  add_limit("--max-bias-z", o.max_bias_z, "The same in standard errors; needs the variance of both");
+  command->callback([&] { exit_code = run_compare(o); });
+}
+
 void refuse_unknown_option(const CLI::App& command, const std::string& argument) {
   const std::string option = argument.substr(0, argument.find('='));
   if (!option.starts_with("--") || command.get_option_no_throw(option)) return;
@@ -195,12 +227,14 @@ int run(int argc, char** argv) {
   VerifyOptions verify;
   PlotOptions plot;
   RenderOptions render;
+  CompareOptions compare;
   add_bake(app, bake, exit_code);
   add_info(app, info, exit_code);
   add_eval(app, eval, exit_code);
   add_verify(app, verify, exit_code);
   add_plot(app, plot, exit_code);
   add_render(app, render, exit_code);
+  add_compare(app, compare, exit_code);
   refuse_unknown(app, argc, argv);
   try {
     app.parse(argc, argv);

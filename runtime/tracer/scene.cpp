@@ -7,6 +7,7 @@
 
 #include "runtime/tracer/image_io.h"
 #include "runtime/tracer/obj.h"
+#include "runtime/tracer/sky.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/frame.h"
 
@@ -89,17 +90,32 @@ void scale_radiance(const ConfigTable& table, Image& map, double scale) {
   }
 }
 
-EnvironmentSource read_environment(const ConfigTable& table) {
-  EnvironmentSource environment;
+// The sky and, unless `sun = false`, its sun, which is a directional light.
+void read_sky(const ConfigTable& table, double scale, Scene& scene) {
+  constexpr int kSkyWidth = 512;
+  Sky sky{.sun_direction = direction(table, "sun_direction"),
+          .turbidity = table.number("turbidity", {2, 10}, Sky().turbidity),
+          .ground_albedo = table.rgb("ground_albedo", kUnit, Rgb(0.1)),
+          .scale = scale};
+  if (sky.sun_direction.z < 0)
+    table.fail("sun_direction", "points below the horizon; allowed: z of 0 or more");
+  scene.environment.map = sky_map(sky, kSkyWidth, kSkyWidth / 2);
+  if (!table.boolean("sun", true)) return;
+  const SunLight sun = sun_light(sky);
+  scene.directional_lights.push_back({sun.direction, sun.irradiance, sun.angular_radius * (360 / kPi)});
+}
+
+void read_environment(const ConfigTable& table, Scene& scene) {
+  const int given = table.has("file") + table.has("color") + table.has("sky");
+  if (given > 1) table.fail("color", "found more than one of color, file and sky; allowed: one of them");
   const double scale = table.number("scale", kEmission, 1.0);
+  if (table.has("sky") && scale > 0) return read_sky(table.table("sky"), scale, scene);
   if (!table.has("file")) {
-    environment.color = scale * table.rgb("color", kEmission, Rgb());
-    return environment;
+    scene.environment.color = scale * table.rgb("color", kEmission, Rgb());
+    return;
   }
-  if (table.has("color")) table.fail("color", "cannot stand beside file; allowed: one of the two");
-  environment.map = load_named_file(table, read_exr).mean;
-  scale_radiance(table, environment.map, scale);
-  return environment;
+  scene.environment.map = load_named_file(table, read_exr).mean;
+  scale_radiance(table, scene.environment.map, scale);
 }
 
 QuadLight read_quad_light(const ConfigTable& table) {
@@ -235,7 +251,7 @@ Scene read_scene(const ConfigTable& config) {
   scene.diffuse_albedo = config.rgb("diffuse_albedo", kUnit, scene.diffuse_albedo);
   scene.camera = read_camera(config.table("camera"));
   scene.render = read_render(config.table("render"));
-  scene.environment = read_environment(config.table("environment"));
+  read_environment(config.table("environment"), scene);
   for (const auto& light : config.tables("light")) read_light(light, scene);
   scene.materials = read_materials(config);
   for (const auto& table : config.tables("object"))

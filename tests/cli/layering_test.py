@@ -49,6 +49,7 @@ RULES = [
     Rule("optics stand alone in bake", ["bake/optics/*"], r"bake/(?!optics/).*"),
     Rule("the live model stands on optics only", ["bake/live/*"], r"bake/(?!live/|optics/).*"),
     Rule("the live model knows nothing of tables", ["bake/live/*", "bake/optics/*"], TABLE_HEADER + "|runtime/tracer/.*"),
+    Rule("comparing pictures needs pictures only", ["bake/compare/*"], r"bake/(?!compare/).*|" + TABLE_HEADER),
     Rule("the library bake knows nothing of the command line", ["bake/*"], r"bake/cli/.*|CLI/.*", but=["bake/cli/*"]),
 ]
 
@@ -156,6 +157,7 @@ class RulesCanFail(unittest.TestCase):
         "optics stand alone in bake": ("bake/optics/a.cpp", '#include "../cell.h"'),
         "the live model stands on optics only": ("bake/live/a.cpp", '#include "bake/sweep.h"'),
         "the live model knows nothing of tables": ("bake/live/a.cpp", '#include "sunbeam/table.h"'),
+        "comparing pictures needs pictures only": ("bake/compare/a.cpp", '#include "bake/recipe.h"'),
         "the library bake knows nothing of the command line": ("bake/a.cpp", '#include "bake/cli/progress.h"'),
     }
 

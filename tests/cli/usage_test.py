@@ -7,7 +7,7 @@ import unittest
 
 import support
 
-COMMANDS = ("bake", "info", "eval", "verify", "plot", "render")
+COMMANDS = ("bake", "info", "eval", "verify", "plot", "render", "compare")
 
 
 class Help(support.CliTest):
@@ -32,6 +32,8 @@ class Help(support.CliTest):
             "eval": ("--points", "--quantity", "--estimator", "--set", "--samples", "--seed"),
             "verify": ("--points", "--json", "--html", "--threads", "--seed"),
             "plot": ("--output", "--what", "--film-thickness-nm", "--base-ior", "--absorption-per-nm", "--theta-i"),
+            "compare": ("--png", "--json", "--pixels-per-degree", "--max-rmse", "--max-relmse", "--max-flip", "--max-bias",
+                        "--max-bias-z"),
             "render": ("--output", "--material", "--estimator", "--size", "--spp", "--threads", "--seed", "--stats"),
         }
         for command, names in options.items():

@@ -209,10 +209,27 @@ INSTANTIATE_TEST_SUITE_P(
                  kCamera + kMaterial + kSphere +
                      "[[light]]\ntype = 'point'\nposition = [0, 0, 3]\nintensity = -1\n",
                  "key 'light[0].intensity': found -1"},
+        BadScene{"sun_below_the_horizon",
+                 kCamera + kMaterial + kSphere + "[environment]\nsky = {sun_direction = [1, 0, -0.1]}\n",
+                 "key 'environment.sky.sun_direction': points below the horizon"},
+        BadScene{"sphere_light_without_size", light("type = 'sphere'\ncenter = [0, 0, 1]\nradius = 0\n"),
+                 "key 'light[0].radius': found 0"},
+        BadScene{"directional_light_without_direction", light("type = 'directional'\ntowards = [0, 0, 0]\n"),
+                 "found a vector of length 0"},
         BadScene{"two_environments",
                  kCamera + kMaterial + kSphere + "[environment]\ncolor = 1\nfile = 'sky.exr'\n",
-                 "key 'environment.color': cannot stand beside file"}),
+                 "key 'environment.color': found more than one of color, file and sky"}),
     [](const auto& info) { return std::string(info.param.name); });
+
+TEST(Scene, SkyBringsItsSun) {
+  const std::string sky = kCamera + kMaterial + kSphere + "[environment]\nsky = {sun_direction = [1, 0, 2]";
+  const Scene scene = scene_from(sky + "}\n");
+  EXPECT_EQ(scene.environment.map.width, 512);
+  ASSERT_EQ(scene.directional_lights.size(), 1u);
+  EXPECT_NEAR(scene.directional_lights[0].towards.z, 2 / std::sqrt(5.0), 1e-12);
+  EXPECT_NEAR(scene.directional_lights[0].angle_deg, 0.53, 0.01);
+  EXPECT_TRUE(scene_from(sky + ", sun = false}\n").directional_lights.empty());
+}
 
 TEST(Scene, MissingEnvironmentFileIsNamed) {
   const std::string message =

@@ -160,6 +160,15 @@ void require_sound(const RenderOptions& options) {
                 "; allowed with --material live");
 }
 
+RenderResult render_named(const std::string& path, const Scene& scene, const SceneMaterials& materials,
+                          const RenderSettings& settings) {
+  try {
+    return render(scene, materials.bsdfs(), settings);
+  } catch (const Error& error) {
+    throw Error(path + ": " + error.what());
+  }
+}
+
 }  // namespace
 
 int run_render(const RenderOptions& options) {
@@ -186,7 +195,7 @@ int run_render(const RenderOptions& options) {
   if (settings.seconds > 0) settings.seconds = std::max(1e-3, settings.seconds - seconds_since(start));
   Monitor monitor(options, source);
   settings.monitor = std::ref(monitor);
-  RenderResult result = render(scene, materials.bsdfs(), settings);
+  RenderResult result = render_named(options.scene, scene, materials, settings);
   if (earlier) result.stats.seconds += earlier->stats.seconds;
 
   write_picture(options.output, result, source, true);

@@ -55,6 +55,7 @@ int run_plot(const PlotOptions& options);
 struct RenderOptions {
   std::string scene, output, stats;
   std::string table;  // in place of the scene's own
+  std::vector<std::string> overrides;
   std::string material = "table";
   std::string estimator = "auto";   // of --material live
   std::optional<std::string> size;  // WIDTHxHEIGHT; as the scene says if not given

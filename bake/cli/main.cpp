@@ -58,7 +58,9 @@ void add_threads(CLI::App* command, int& threads) {
 }
 
 void add_overrides(CLI::App* command, std::vector<std::string>& overrides) {
-  command->add_option("--set", overrides, "Override a recipe key: section.key=value")
+  command
+      ->add_option("--set", overrides,
+                   "Override a key of the file: section.key=value, material[0].albedo=0.2")
       ->expected(1)
       ->take_all();
 }
@@ -160,6 +162,7 @@ void add_render(CLI::App& app, RenderOptions& o, int& exit_code) {
                     "Write the picture so far every 2 s, --watch=5: every 5 s");
   command->add_flag("--aovs", o.aovs, "Add layers: albedo, normals, depth, film thickness");
   command->add_option("--resume", o.resume, "Picture of the same scene to go on from");
+  add_overrides(command, o.overrides);
   add_threads(command, o.threads);
   command->add_option("--seed", o.seed, "Random seed")->check(whole_number(0, kAnySeed));
   command->add_option("--stats", o.stats, "Write timing and counts to this JSON file");

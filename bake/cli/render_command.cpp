@@ -82,8 +82,9 @@ double parse_seconds(const std::string& text) {
 }
 
 // The scene file's own content but for the number of samples, which a continued picture may raise.
-std::string scene_hash(const std::string& path) {
-  return content_hash(ConfigTable::load(path, {"render.spp=1"}).canonical_text());
+std::string scene_hash(const std::string& path, std::vector<std::string> overrides) {
+  overrides.push_back("render.spp=1");
+  return content_hash(ConfigTable::load(path, overrides).canonical_text());
 }
 
 // A bar on stderr, the picture so far on disk every few seconds, and Ctrl-C.
@@ -175,14 +176,14 @@ int run_render(const RenderOptions& options) {
   const Clock::time_point start = Clock::now();
   require_sound(options);
   RenderSettings settings = read_settings(options);
-  Scene scene = load_scene(options.scene);
+  Scene scene = load_scene(options.scene, options.overrides);
   if (!options.table.empty()) scene.table = options.table;
   const SceneMaterials materials(scene, options.scene, options.material, estimator_of(options.estimator));
   for (const auto& path : {options.output, png_beside(options.output)}) require_writable(path);
   if (!options.stats.empty()) require_writable(options.stats);
 
   const PictureSource source{.scene = options.scene,
-                             .scene_hash = scene_hash(options.scene),
+                             .scene_hash = scene_hash(options.scene, options.overrides),
                              .material = options.material,
                              .estimators = materials.estimators(),
                              .table_hash = materials.table_hash(),

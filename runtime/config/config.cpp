@@ -5,6 +5,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -70,6 +71,24 @@ toml::table parse_value(const std::string& value) {
   }
 }
 
+// The entry that "material[1]" names in a list of tables; none if there is no such entry.
+toml::table* list_entry(toml::table& table, const std::string& section) {
+  const auto bracket = section.find('[');
+  const toml::array* list = table[section.substr(0, bracket)].as_array();
+  std::size_t index = 0;
+  const char* end = section.data() + section.size();
+  const auto number = std::from_chars(section.data() + bracket + 1, end, index);
+  const bool is_index = number.ec == std::errc() && number.ptr + 1 == end && *number.ptr == ']';
+  if (!list || !is_index || index >= list->size()) return nullptr;
+  return table[section.substr(0, bracket)][index].as_table();
+}
+
+toml::table* section_of(toml::table& table, const std::string& section) {
+  if (section.find('[') != std::string::npos) return list_entry(table, section);
+  if (!table.contains(section)) table.insert(section, toml::table{});
+  return table[section].as_table();
+}
+
 void apply_override(toml::table& root, const std::string& text, const std::string& file) {
   const auto equals = text.find('=');
   const auto dot = text.find('.');
@@ -79,8 +98,7 @@ void apply_override(toml::table& root, const std::string& text, const std::strin
   std::string key = text.substr(0, equals);
   for (auto at = key.find('.'); at != std::string::npos; at = key.find('.')) {
     const std::string section = key.substr(0, at);
-    if (!table->contains(section)) table->insert(section, toml::table{});
-    table = (*table)[section].as_table();
+    table = section_of(*table, section);
     if (!table) throw Error(fmt::format("{}: override '{}': '{}' is not a section", file, text, section));
     key = key.substr(at + 1);
   }

@@ -24,7 +24,8 @@ struct Range {
 
 class ConfigTable {
  public:
-  // Parses a file; `overrides` are "section.key=value" strings, the value in TOML syntax or a bare string.
+  // Parses a file; `overrides` are "section.key=value" strings, the value in TOML syntax or a bare string. A
+  // section may be an entry of a list, counted from 0: "material[1].albedo=0.2".
   static ConfigTable load(const std::string& path, const std::vector<std::string>& overrides = {});
   static ConfigTable parse(const std::string& text, const std::string& name,
                            const std::vector<std::string>& overrides = {});

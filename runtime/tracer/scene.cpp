@@ -261,6 +261,8 @@ Scene read_scene(const ConfigTable& config) {
   return scene;
 }
 
-Scene load_scene(const std::string& path) { return read_scene(ConfigTable::load(path)); }
+Scene load_scene(const std::string& path, const std::vector<std::string>& overrides) {
+  return read_scene(ConfigTable::load(path, overrides));
+}
 
 }  // namespace sunbeam

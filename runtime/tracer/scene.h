@@ -104,6 +104,7 @@ struct Scene {
 // Throws Error for anything missing, out of range, unknown or degenerate, in the file or in what it names.
 // `recipe` and `table` are resolved but not opened.
 Scene read_scene(const ConfigTable& config);
-Scene load_scene(const std::string& path);
+// `overrides` as in ConfigTable::load.
+Scene load_scene(const std::string& path, const std::vector<std::string>& overrides = {});
 
 }  // namespace sunbeam

@@ -161,6 +161,19 @@ TEST(Config, OverridesReplaceAddAndKeepTypes) {
   EXPECT_EQ(film({"film.count=1", "film.count=2"}).integer("count", 0, 9), 2);  // the last one counts
 }
 
+TEST(Config, OverridesReachIntoLists) {
+  const std::string text = "[[light]]\nx = 1\n[[light]]\nx = 2\n";
+  const auto lights =
+      ConfigTable::parse(text, "f.toml", {"light[1].x=7", "light[0].sub.y=3"}).tables("light");
+  EXPECT_EQ(lights[0].integer("x", 0, 9), 1);
+  EXPECT_EQ(lights[1].integer("x", 0, 9), 7);
+  EXPECT_EQ(lights[0].table("sub").integer("y", 0, 9), 3);
+  for (const char* bad :
+       {"light[2].x=1", "light[-1].x=1", "light[].x=1", "light[0.x=1", "light.x=1", "lamp[0].x=1"})
+    EXPECT_THAT(message_of([&] { ConfigTable::parse(text, "f.toml", {bad}); }), HasSubstr("is not a section"))
+        << bad;
+}
+
 TEST(Config, OverriddenValueIsCheckedToo) {
   EXPECT_THAT(message_of([] {
                 film({"film.thickness=-1"}).number("thickness", {0, 9});

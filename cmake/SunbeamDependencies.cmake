@@ -10,6 +10,7 @@ if(SUNBEAM_BUILD_TRACER OR SUNBEAM_BUILD_BAKE)
   find_package(TBB 2021.8 CONFIG REQUIRED COMPONENTS tbb)
   find_package(embree 3.13 CONFIG REQUIRED)
   find_package(tinyobjloader CONFIG REQUIRED)
+  find_package(assimp 5.2 CONFIG REQUIRED)
   find_package(PNG REQUIRED)
 endif()
 

@@ -176,6 +176,7 @@ int run_render(const RenderOptions& options) {
     settings.height = size.height;
   }
   Scene scene = load_scene(options.scene);
+  for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
   if (!options.table.empty()) scene.table = options.table;
   if (options.estimator != "auto" && options.material != "live")
     throw Error("--estimator: found '" + options.estimator + "' with --material " + options.material +

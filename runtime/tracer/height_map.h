@@ -36,6 +36,7 @@ HeightMap load_height_map(const std::string& path);
 
 // .exr: one 32-bit float channel Y. .png: 16-bit grey, values clamped to [0, 1]. Throws Error for another
 // extension.
+void require_height_map_extension(const std::string& path);
 void write_height_map(const std::string& path, const HeightMap& map);
 
 }  // namespace sunbeam

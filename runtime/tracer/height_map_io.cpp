@@ -119,10 +119,6 @@ std::string png_bytes(const HeightMap& map) {
   return bytes;
 }
 
-[[noreturn]] void refuse_extension(const std::string& path) {
-  throw Error(fmt::format("{}: extension is '{}'; allowed for heights: .exr, .png", path, extension(path)));
-}
-
 void require_sane(const HeightMap& map) {
   for (const float value : map.values)
     if (!(std::abs(value) <= kMaxHeight))
@@ -132,11 +128,16 @@ void require_sane(const HeightMap& map) {
 
 }  // namespace
 
-HeightMap load_height_map(const std::string& path) {
+void require_height_map_extension(const std::string& path) {
   const std::string type = extension(path);
-  if (type != ".exr" && type != ".png") refuse_extension(path);
+  if (type != ".exr" && type != ".png")
+    throw Error(fmt::format("{}: extension is '{}'; allowed for heights: .exr, .png", path, type));
+}
+
+HeightMap load_height_map(const std::string& path) {
+  require_height_map_extension(path);
   try {
-    const HeightMap map = type == ".exr" ? read_exr_heights(path) : read_png_heights(path);
+    const HeightMap map = extension(path) == ".exr" ? read_exr_heights(path) : read_png_heights(path);
     require_sane(map);
     return map;
   } catch (const std::exception& error) {
@@ -145,9 +146,8 @@ HeightMap load_height_map(const std::string& path) {
 }
 
 void write_height_map(const std::string& path, const HeightMap& map) {
-  const std::string type = extension(path);
-  if (type != ".exr" && type != ".png") refuse_extension(path);
-  write_file_atomically(path, type == ".exr" ? exr_bytes(map) : png_bytes(map));
+  require_height_map_extension(path);
+  write_file_atomically(path, extension(path) == ".exr" ? exr_bytes(map) : png_bytes(map));
 }
 
 }  // namespace sunbeam

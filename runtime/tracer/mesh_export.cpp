@@ -67,11 +67,15 @@ std::string ply_bytes(const Mesh& mesh) {
 
 }  // namespace
 
-void write_mesh(const std::string& path, const Mesh& mesh) {
+void require_mesh_extension(const std::string& path) {
   const std::string type = extension(path);
   if (type != ".obj" && type != ".ply")
     throw Error(fmt::format("{}: extension is '{}'; allowed for writing a mesh: .obj, .ply", path, type));
-  write_file_atomically(path, type == ".obj" ? obj_text(mesh) : ply_bytes(mesh));
+}
+
+void write_mesh(const std::string& path, const Mesh& mesh) {
+  require_mesh_extension(path);
+  write_file_atomically(path, extension(path) == ".obj" ? obj_text(mesh) : ply_bytes(mesh));
 }
 
 }  // namespace sunbeam

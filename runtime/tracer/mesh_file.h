@@ -23,6 +23,7 @@ LoadedMesh load_mesh(const std::string& path);
 
 // .obj, or .ply (binary, little-endian, single precision; texture coordinates as s, t). Throws Error for
 // another extension or if the file cannot be written.
+void require_mesh_extension(const std::string& path);
 void write_mesh(const std::string& path, const Mesh& mesh);
 
 // What every importer ends with. Throws Error naming the file if no triangle is left.

@@ -143,7 +143,7 @@ Relief read_scales(const ConfigTable& table) {
     layout.jitter = table.number("jitter", {0, 1}, 1.0);
     layout.seed = static_cast<std::uint64_t>(table.integer("seed", 0, std::numeric_limits<int>::max(), 1));
   }
-  const double edge = table.number("edge", {0.02, 0.5}, 0.5);
+  const double edge = table.number("edge", {0.02, 0.5}, 0.35);
   const int pixels = std::clamp(kMapPixels / layout.columns, 8, 64);
   return {.map = std::make_shared<HeightMap>(scale_height_map(layout, edge, pixels)),
           .tiles = {static_cast<double>(around) / layout.columns, rows / layout.rows},

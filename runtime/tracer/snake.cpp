@@ -8,7 +8,7 @@ namespace {
 
 // Lengths in body radii from here on. Distances along the body are from the tip of the tail ("arc") or from
 // the snout ("back").
-constexpr double kHeadLength = 3.1;
+constexpr double kHeadLength = 3.5;
 constexpr double kNeckLength = 9;      // over which the body thins towards the head
 constexpr double kTailFraction = 0.5;  // of the whole, over which it thins towards the tip
 
@@ -119,9 +119,9 @@ CrossSection body_section(double arc, double total) {
 }
 
 CrossSection head_section(double along) {
-  constexpr double kWidth[] = {kNeckWidth, 0.72, 0.98, 1.0, 0.84, 0.68, 0.56, 0.48, 0.42};
-  constexpr double kAbove[] = {kNeckWidth, 0.58, 0.60, 0.60, 0.58, 0.50, 0.40, 0.33, 0.28};
-  constexpr double kBelow[] = {kNeckWidth, 0.50, 0.47, 0.45, 0.42, 0.37, 0.32, 0.28, 0.25};
+  constexpr double kWidth[] = {kNeckWidth, 0.60, 0.75, 0.92, 0.96, 0.86, 0.71, 0.57, 0.47};
+  constexpr double kAbove[] = {kNeckWidth, 0.56, 0.57, 0.59, 0.58, 0.52, 0.42, 0.33, 0.28};
+  constexpr double kBelow[] = {kNeckWidth, 0.52, 0.48, 0.45, 0.42, 0.37, 0.31, 0.27, 0.24};
   const double into_snout = std::clamp((along - kSnoutFrom) / (1 - kSnoutFrom), 0.0, 1.0);
   const double close = std::sqrt(1 - square(into_snout));
   return {close * curve(kWidth, along), close * curve(kAbove, along), close * curve(kBelow, along)};
@@ -141,9 +141,9 @@ Spline::Point center_at(const Spline& spline, double arc) {
 
 // The mouth: a groove along both sides of the head, as a factor on the cross-section.
 double mouth(double along, double u) {
-  if (along < 0.2) return 1;
-  const double from_belly = std::min(u, 1 - u), reach = std::min(1.0, (along - 0.2) / 0.2);
-  return 1 - 0.06 * reach * std::exp(-square((from_belly - 0.205) / 0.012));
+  if (along < 0.35) return 1;
+  const double from_belly = std::min(u, 1 - u), reach = std::min(1.0, (along - 0.35) / 0.15);
+  return 1 - 0.1 * reach * std::exp(-square((from_belly - 0.2) / 0.014));
 }
 
 // --- frames ---
@@ -243,7 +243,7 @@ void append(Mesh& mesh, const Mesh& part) {
 }
 
 void add_eyes(Mesh& mesh, const std::vector<Ring>& rings, double total) {
-  constexpr double kAlong = 0.6, kRadius = 0.15, kFromBelly = 0.345, kDepth = 0.45;
+  constexpr double kAlong = 0.66, kRadius = 0.16, kFromBelly = 0.345, kDepth = 0.45;
   const double arc = total - (1 - kAlong) * kHeadLength;
   const auto ring = std::find_if(rings.begin(), rings.end(), [&](const Ring& r) { return r.arc >= arc; });
   for (const double u : {kFromBelly, 1 - kFromBelly}) {

@@ -261,8 +261,9 @@ TEST(Scene, BadMeshesAreRefused) {
   expect_mesh_error(corners + "vn 0 0 0\nf 1//1 2//1 3//1\n", "normal 1 has length 0");
   expect_mesh_error(corners, "the mesh has no face");
   expect_mesh_error("", "the mesh has no face");
-  expect_mesh_error("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "triangle without area");
-  expect_mesh_error(corners + "f 1 2 2\n", "triangle without area");
+  expect_mesh_error("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n",
+                    "found 1 triangles without area and no other face");
+  expect_mesh_error(corners + "f 1 2 2\n", "found 1 triangles without area and no other face");
 }
 
 }  // namespace

@@ -26,7 +26,8 @@ LoadedMesh load_mesh(const std::string& path);
 void require_mesh_extension(const std::string& path);
 void write_mesh(const std::string& path, const Mesh& mesh);
 
-// What every importer ends with. Throws Error naming the file if no triangle is left.
-LoadedMesh without_flat_triangles(const std::string& path, Mesh mesh);
+// What every importer of indexed triangles ends with: the checks of load_mesh() on numbers and areas, normals
+// made unit. Indices must be in range.
+LoadedMesh checked_mesh(const std::string& path, Mesh mesh);
 
 }  // namespace sunbeam

@@ -149,7 +149,7 @@ LoadedMesh load_obj(const std::string& path) {
   if (!has_uvs) mesh.uvs.clear();
   for (std::uint32_t i = 0; i + 2 < mesh.positions.size(); i += 3)
     mesh.triangles.push_back({i, i + 1, i + 2});
-  return without_flat_triangles(path, std::move(mesh));
+  return checked_mesh(path, std::move(mesh));
 }
 
 }  // namespace sunbeam

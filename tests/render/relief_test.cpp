@@ -89,13 +89,19 @@ TEST(Relief, TerminatorShadowingIsContinuousAndBounded) {
     const Vec3 wi = random_direction(rng);
     const double s = terminator_shadowing(normal, smooth, wi);
     ASSERT_TRUE(s >= 0 && s <= 1);
-    if (wi.z <= 0) ASSERT_EQ(s, 0);
+    if (wi.z <= 0) {
+      ASSERT_EQ(s, 0);
+    }
     // Half way between the terms of its definition.
     const double g = wi.z / (dot(normal, wi) * normal.z);
-    if (wi.z > 0 && dot(normal, wi) > 0) ASSERT_NEAR(s, g >= 1 ? 1 : g + g * g - g * g * g, 1e-12);
+    if (wi.z > 0 && dot(normal, wi) > 0) {
+      ASSERT_NEAR(s, g >= 1 ? 1 : g + g * g - g * g * g, 1e-12);
+    }
     // At the horizon of the smooth surface it starts from 0.
     const Vec3 horizon = normalize(Vec3{normal.x, normal.y, 1e-4});
-    if (normal.z < 0.95) ASSERT_LT(terminator_shadowing(normal, smooth, horizon), 0.01);
+    if (normal.z < 0.95) {
+      ASSERT_LT(terminator_shadowing(normal, smooth, horizon), 0.01);
+    }
   }
   EXPECT_EQ(terminator_shadowing(smooth, smooth, normalize(Vec3{1, 0, 0.01})), 1);
 }

@@ -116,8 +116,12 @@ TEST(Snake, BellyIsDownAndBackIsUp) {
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const Point2& uv = mesh.uvs[i];
     if (uv.y < 0.1 * most_v || uv.y > 0.75 * most_v) continue;  // the neck may be steep
-    if (uv.x == 0 || uv.x == 1) ASSERT_LT(mesh.normals[i].z, -0.8) << uv.y / most_v;
-    if (uv.x == 0.5) ASSERT_GT(mesh.normals[i].z, 0.8) << uv.y / most_v;
+    if (uv.x == 0 || uv.x == 1) {
+      ASSERT_LT(mesh.normals[i].z, -0.8) << uv.y / most_v;
+    }
+    if (uv.x == 0.5) {
+      ASSERT_GT(mesh.normals[i].z, 0.8) << uv.y / most_v;
+    }
   }
 }
 

@@ -12,6 +12,8 @@ constexpr double kHeadLength = 3.5;
 constexpr double kNeckLength = 9;      // over which the body thins towards the head
 constexpr double kTailFraction = 0.5;  // of the whole, over which it thins towards the tip
 
+constexpr double kTipLength = 0.15;  // of the tail, rounded
+
 // --- the centreline: a uniform cubic B-spline ---
 
 class Spline {
@@ -107,14 +109,16 @@ struct CrossSection {
 constexpr double kNeckWidth = 0.56;
 constexpr double kSnoutFrom = 0.8;  // of the head; from here the snout closes like an ellipse
 
-CrossSection body_section(double arc, double total) {
+// Of the body, but for the rounding of the tail's tip.
+double body_thickness(double arc, double total) {
   const double tail = std::min(1.0, arc / (kTailFraction * total));
-  const double back = total - arc - kHeadLength;
-  const double neck = std::clamp(back / kNeckLength, 0.0, 1.0);
+  const double neck = std::clamp((total - arc - kHeadLength) / kNeckLength, 0.0, 1.0);
   const double slim = lerp(neck * neck * (3 - 2 * neck), kNeckWidth, 1);
-  // Rounded at the very tip.
-  const double tip = std::sqrt(std::min(1.0, arc / 0.15));
-  const double radius = slim * (0.05 + 0.95 * std::pow(std::sin(kPi / 2 * tail), 0.8)) * tip;
+  return slim * (0.05 + 0.95 * std::pow(std::sin(kPi / 2 * tail), 0.8));
+}
+
+CrossSection body_section(double arc, double total) {
+  const double radius = std::sqrt(std::min(1.0, arc / kTipLength)) * body_thickness(arc, total);
   return {radius, radius, radius};
 }
 
@@ -135,7 +139,7 @@ CrossSection section_at(double arc, double total) {
 // On the centreline, lowered where the tail is thin, so that it rests on the ground.
 Spline::Point center_at(const Spline& spline, double arc) {
   Spline::Point point = spline.at(arc);
-  if (arc < kTailFraction * spline.total()) point.position.z -= 1 - section_at(arc, spline.total()).below;
+  if (arc < kTailFraction * spline.total()) point.position.z -= 1 - body_thickness(arc, spline.total());
   return point;
 }
 
@@ -167,10 +171,10 @@ Vec3 next_up(const Vec3& up, const Vec3& tangent, double step) {
 // Where rings stand: a fixed part of the girth apart, closer at both ends, which are round.
 std::vector<double> ring_arcs(double total, int per_girth) {
   constexpr int kEndRings = 12;
-  const double tail_end = 0.15, snout = total - (1 - kSnoutFrom) * kHeadLength;
+  const double snout = total - (1 - kSnoutFrom) * kHeadLength;
   std::vector<double> arcs;
-  for (int i = 0; i < kEndRings; ++i) arcs.push_back(tail_end * square(static_cast<double>(i) / kEndRings));
-  for (double arc = tail_end; arc < snout;) {
+  for (int i = 0; i < kEndRings; ++i) arcs.push_back(kTipLength * square(static_cast<double>(i) / kEndRings));
+  for (double arc = kTipLength; arc < snout;) {
     arcs.push_back(arc);
     arc += std::max(section_at(arc, total).girth(), 0.5) / per_girth;
   }

@@ -21,11 +21,20 @@ ScaleLayout layout_of(const TextureOptions& options) {
   return {options.columns, options.rows, is_voronoi ? options.jitter : 0, options.seed};
 }
 
+void require_size(const TextureOptions& options, const Point2& tile) {
+  constexpr double kMaxPixels = 1 << 27;
+  const double pixels = tile.x * tile.y * square(options.pixels_per_scale);
+  if (pixels > kMaxPixels)
+    throw Error(fmt::format("--pixels-per-scale: found {}, {:.3g} pixels in all; allowed: {:.3g}",
+                            options.pixels_per_scale, pixels, kMaxPixels));
+}
+
 }  // namespace
 
 int run_texture(const TextureOptions& options) {
   const ScaleLayout layout = layout_of(options);
   require_height_map_extension(options.output);
+  require_size(options, tile_size(layout));
   require_writable(options.output);
   const HeightMap map = scale_height_map(layout, options.edge, options.pixels_per_scale);
   write_height_map(options.output, map);

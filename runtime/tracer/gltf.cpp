@@ -109,7 +109,7 @@ class Document {
   }
 
   Mesh mesh() {
-    for (const std::size_t root : roots()) add_node(root, {});
+    for (const std::size_t root : roots()) add_node(root, {}, 0);
     if (!has_normals_) mesh_.normals.clear();
     if (!has_uvs_) mesh_.uvs.clear();
     return std::move(mesh_);
@@ -165,7 +165,9 @@ class Document {
     return all;
   }
 
-  void add_node(std::size_t index, const Affine& parent) {
+  void add_node(std::size_t index, const Affine& parent, int depth) {
+    constexpr int kMaxDepth = 1000;  // the stack bears far more
+    if (depth > kMaxDepth) throw Error(fmt::format("nodes are nested deeper than {}", kMaxDepth));
     const Json& node = entry("nodes", index);
     if (visited_.size() <= index) visited_.resize(index + 1);
     if (visited_[index]) throw Error(fmt::format("node {} is met twice; nodes must form trees", index));
@@ -175,7 +177,7 @@ class Document {
       for (const Json& primitive : entry("meshes", node["mesh"].get<std::size_t>()).at("primitives"))
         add_primitive(primitive, matrix);
     for (const std::size_t child : node.value("children", std::vector<std::size_t>{}))
-      add_node(child, matrix);
+      add_node(child, matrix, depth + 1);
   }
 
   void add_primitive(const Json& primitive, const Affine& matrix) {
@@ -246,8 +248,8 @@ class Document {
                view_at = view.value("byteOffset", std::size_t{0});
     const auto at = accessor.value("byteOffset", std::size_t{0});
     constexpr std::size_t kMost = std::size_t{1} << 40;  // no sum or product below overflows
-    if (count > kMost || stride > 252 || at > kMost || view_size > kMost || view_at > kMost ||
-        view_at + view_size > buffers_[buffer].size() ||
+    if (count > kMost || stride < size || stride > 252 || at > kMost || view_size > kMost ||
+        view_at > kMost || view_at + view_size > buffers_[buffer].size() ||
         (count > 0 && at + (count - 1) * stride + size > view_size))
       throw Error(fmt::format("accessor {} reaches beyond its buffer", index));
     std::vector<double> result;

@@ -192,6 +192,7 @@ void read_vertices(Numbers& numbers, const Element& element, Mesh& mesh) {
   for (const auto& names : {std::vector<std::string>{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}})
     if (uv.empty()) uv = places(element, names);
   if (position.empty()) throw Error("its vertices have no x, y, z");
+  if (!mesh.positions.empty()) throw Error("found the element vertex a second time");
   std::vector<double> row;
   for (std::uint64_t i = 0; i < element.count; ++i) {
     read_row(numbers, element, row, [](const Property&, const std::vector<double>&) {});

@@ -25,6 +25,8 @@ class TextureTest(CliTest):
     def test_bad_values_are_told(self):
         self.refuse("texture", "-o", "a.exr", "--rows", "3", naming=("--rows: found 3; allowed: an even number",))
         self.refuse("texture", "-o", "a.exr", "--edge", "nan", naming=("--edge: found nan; allowed: 0.02 to 0.5",))
+        self.refuse("texture", "-o", "a.exr", "--columns", "512", "--rows", "512", "--pixels-per-scale", "256",
+                    naming=("--pixels-per-scale: found 256", "pixels in all"))
         self.refuse("texture", "-o", "a.jpg", naming=("allowed for heights: .exr, .png",))
         self.refuse("texture", "-o", "a.exr", "--pattern", "round", naming=("round",))
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -207,6 +207,66 @@ TEST(MeshFile, BadGlbIsRefused) {
   const std::string whole = glb({});
   for (std::size_t size = 0; size < whole.size(); size += 61)
     EXPECT_NE(load_error("m.glb", whole.substr(0, size)), "") << size << " of " << whole.size();
+}
+
+TEST(MeshFile, GltfWithItsBufferInsideOrBeside) {
+  // The same triangle, positions only, as base64 and as a file; two nodes, one mirrored.
+  const auto text = [](const std::string& uri) {
+    return R"({"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}, {"mesh": 0, "scale": [-1, 1, 1]}],
+      "scenes": [{"nodes": [0, 1]}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+      "buffers": [{"byteLength": 36, "uri": ")" +
+           uri + R"("}], "bufferViews": [{"buffer": 0, "byteLength": 36}],
+      "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}]})";
+  };
+  const ScratchFolder folder;
+  std::string data;
+  put<float>(data, {0, 0, 0, 1, 0, 0, 0, 1, 0});
+  folder.write("data.bin", data);
+  for (const std::string uri :
+       {"data.bin",
+        "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}) {
+    const Mesh mesh = load_mesh(folder.write("m.gltf", text(uri))).mesh;
+    ASSERT_EQ(mesh.triangles.size(), 2u);
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const Vec3 winding =
+          cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]);
+      EXPECT_LT(length(winding - Vec3{0, 0, 1}), 1e-6);  // mirrored or not, the same side is out
+    }
+  }
+  EXPECT_NE(load_error("m.gltf", text("missing.bin")).find("missing.bin: cannot read"), std::string::npos);
+}
+
+// Flips bytes: what loads is sound, what does not says so in a line.
+TEST(MeshFile, DamagedBytesNeverCrash) {
+  const ScratchFolder folder;
+  write_mesh(folder.file("whole.ply"), sphere_mesh(1, 8));
+  int refused = 0, loaded = 0;
+  for (const auto& [name, whole] :
+       {std::pair<std::string, std::string>{"m.ply", read_file(folder.file("whole.ply"))},
+        {"m.ply", ply(kCorners, "4 0 1 2 3\n")},
+        {"m.glb", glb({})}}) {
+    Rng rng(21, 0);
+    for (int i = 0; i < 150; ++i) {
+      std::string damaged = whole;
+      for (int k = 0; k < 2; ++k)
+        damaged[static_cast<std::size_t>(rng.uniform() * static_cast<double>(whole.size()))] =
+            static_cast<char>(rng.next());
+      const std::string path = folder.write(name, damaged);
+      Mesh mesh;
+      const std::string message = error_of([&] { mesh = load_mesh(path).mesh; });
+      ++(message.empty() ? loaded : refused);
+      ASSERT_EQ(message.find('\n'), std::string::npos) << message;
+      for (const auto& triangle : mesh.triangles)
+        for (const std::uint32_t corner : triangle) {
+          ASSERT_LT(corner, mesh.positions.size());
+          ASSERT_TRUE(std::isfinite(length(mesh.positions[corner])));
+        }
+      ASSERT_TRUE(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
+      ASSERT_TRUE(mesh.uvs.empty() || mesh.uvs.size() == mesh.positions.size());
+    }
+  }
+  EXPECT_GT(refused, 50);
+  EXPECT_GT(loaded, 50);
 }
 
 }  // namespace

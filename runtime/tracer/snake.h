@@ -7,7 +7,7 @@ namespace sunbeam {
 
 struct SnakeShape {
   double body_radius = 0.25;  // half the width of the body where it is thickest
-  double turns = 2.5;         // of the coil on the ground, 1 to 6
+  double turns = 2.5;         // of the coil on the ground, 1 to 6, rounded to sixteenths
   int resolution = 128;  // vertices around the body, 16 to 1024; half as many to the same length along it
 };
 

@@ -10,6 +10,7 @@ if(SUNBEAM_BUILD_TRACER OR SUNBEAM_BUILD_BAKE)
   find_package(TBB 2021.8 CONFIG REQUIRED COMPONENTS tbb)
   find_package(embree 3.13 CONFIG REQUIRED)
   find_package(tinyobjloader CONFIG REQUIRED)
+  find_package(nlohmann_json 3.11 CONFIG REQUIRED)
   find_package(PNG REQUIRED)
 endif()
 
@@ -22,7 +23,6 @@ endif()
 
 if(SUNBEAM_BUILD_BAKE)
   find_package(CLI11 2.1 CONFIG REQUIRED)
-  find_package(nlohmann_json 3.11 CONFIG REQUIRED)
 endif()
 
 if(SUNBEAM_BUILD_TESTS)

@@ -81,4 +81,23 @@ struct CompareOptions {
 };
 int run_compare(const CompareOptions& options);
 
+struct TextureOptions {
+  std::string output;
+  std::string pattern = "hexagonal";  // or voronoi
+  int columns = 8, rows = 10;         // of scales in the tile
+  double edge = 0.35, jitter = 1;
+  int pixels_per_scale = 64;
+  std::uint64_t seed = 1;
+};
+int run_texture(const TextureOptions& options);
+
+struct MeshOptions {
+  std::string shape, output;  // snake, torus or sphere
+  int resolution = 128;
+  double body_radius = 0.25, turns = 2.5;          // of the snake
+  double major_radius = 1.0, minor_radius = 0.35;  // of the torus
+  double radius = 1.0;                             // of the sphere
+};
+int run_mesh(const MeshOptions& options);
+
 }  // namespace sunbeam

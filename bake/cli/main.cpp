@@ -12,6 +12,7 @@
 #include "bake/cli/commands.h"
 #include "bake/version.h"
 #include "runtime/config/config.h"
+#include "runtime/tracer/scales.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/text.h"
 
@@ -189,6 +190,43 @@ void add_compare(CLI::App& app, CompareOptions& o, int& exit_code) {
   command->callback([&] { exit_code = run_compare(o); });
 }
 
+void add_texture(CLI::App& app, TextureOptions& o, int& exit_code) {
+  CLI::App* command = add_command(app, "texture", "Write scales as a height map that tiles without a seam",
+                                  "sunbeam texture -o scales.exr --pattern voronoi --columns 24 --rows 28");
+  command->add_option("-o,--output", o.output, "Heights to write: .exr (float) or .png (16 bits)")
+      ->required();
+  command->add_option("--pattern", o.pattern, "Grid of the scales")
+      ->check(CLI::IsMember({"hexagonal", "voronoi"}));
+  command->add_option("--columns", o.columns, "Scales across the tile")
+      ->check(whole_number(1, kMaxScaleColumns));
+  command->add_option("--rows", o.rows, "Rows of scales in the tile, an even number")
+      ->check(whole_number(2, kMaxScaleColumns));
+  command->add_option("--edge", o.edge, "Width of a scale's slope in scale widths; 0.5 is a dome");
+  command->add_option("--jitter", o.jitter, "Disorder of voronoi scales: 0 is the hexagonal grid");
+  command->add_option("--pixels-per-scale", o.pixels_per_scale, "Pixels to a scale width")
+      ->check(whole_number(4, 256));
+  command->add_option("--seed", o.seed, "Random seed of voronoi scales")->check(whole_number(0, kAnySeed));
+  command->callback([&] { exit_code = run_texture(o); });
+}
+
+void add_mesh(CLI::App& app, MeshOptions& o, int& exit_code) {
+  CLI::App* command = add_command(app, "mesh", "Write a built-in shape as a mesh",
+                                  "sunbeam mesh snake -o snake.ply --turns 3");
+  command->add_option("shape", o.shape, "Shape")
+      ->required()
+      ->check(CLI::IsMember({"snake", "torus", "sphere"}));
+  command->add_option("-o,--output", o.output, "Mesh to write (.ply or .obj)")->required();
+  command
+      ->add_option("--resolution", o.resolution, "Vertices around: the snake's body, the axis of the others")
+      ->check(whole_number(16, 1024));
+  command->add_option("--body-radius", o.body_radius, "Of the snake, where it is thickest");
+  command->add_option("--turns", o.turns, "Of the snake's coil, 1 to 6");
+  command->add_option("--major-radius", o.major_radius, "Of the torus");
+  command->add_option("--minor-radius", o.minor_radius, "Of the torus");
+  command->add_option("--radius", o.radius, "Of the sphere");
+  command->callback([&] { exit_code = run_mesh(o); });
+}
+
 void refuse_unknown_option(const CLI::App& command, const std::string& argument) {
   const std::string option = argument.substr(0, argument.find('='));
   if (!option.starts_with("--") || command.get_option_no_throw(option)) return;
@@ -231,6 +269,8 @@ int run(int argc, char** argv) {
   PlotOptions plot;
   RenderOptions render;
   CompareOptions compare;
+  TextureOptions texture;
+  MeshOptions mesh;
   add_bake(app, bake, exit_code);
   add_info(app, info, exit_code);
   add_eval(app, eval, exit_code);
@@ -238,6 +278,8 @@ int run(int argc, char** argv) {
   add_plot(app, plot, exit_code);
   add_render(app, render, exit_code);
   add_compare(app, compare, exit_code);
+  add_texture(app, texture, exit_code);
+  add_mesh(app, mesh, exit_code);
   refuse_unknown(app, argc, argv);
   try {
     app.parse(argc, argv);

@@ -177,6 +177,7 @@ int run_render(const RenderOptions& options) {
   require_sound(options);
   RenderSettings settings = read_settings(options);
   Scene scene = load_scene(options.scene, options.overrides);
+  for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
   if (!options.table.empty()) scene.table = options.table;
   const SceneMaterials materials(scene, options.scene, options.material, estimator_of(options.estimator));
   for (const auto& path : {options.output, png_beside(options.output)}) require_writable(path);

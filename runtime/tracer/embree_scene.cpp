@@ -6,7 +6,6 @@
 #include <limits>
 #include <vector>
 
-#include "runtime/tracer/tangents.h"
 #include "sunbeam/core/error.h"
 
 namespace sunbeam {
@@ -37,6 +36,8 @@ struct Surface {
   int object = -1, light = -1;
   double offset = 0;
   std::vector<Vec3> tangents = {};  // of the triangles of a flat mesh, of the vertices of a smooth one
+  bool has_relief = false;
+  std::vector<UvDerivatives> derivatives = {};  // of the vertices of a mesh with relief
 };
 
 double largest_coordinate(const Vec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
@@ -53,6 +54,11 @@ double offset_of(const Mesh& mesh) {
 
 std::vector<Vec3> tangents_of(const Mesh& mesh) {
   return mesh.normals.empty() ? triangle_tangents(mesh) : vertex_tangents(mesh);
+}
+
+bool has_relief(const Scene& scene, int object) {
+  const int material = scene.objects[static_cast<std::size_t>(object)].material;
+  return scene.materials[static_cast<std::size_t>(material)].relief.has_value();
 }
 
 // --- spheres: Embree calls back, and the roots are found in double precision ---
@@ -143,12 +149,22 @@ Geometry make_mesh(RTCDevice device, const Mesh& mesh) {
 
 struct Point {
   Vec3 position, geometric_normal, shading_normal, tangent;
+  Point2 uv = {};
+  UvDerivatives derivatives = {};
 };
 
 // Embree's distance is in single precision: the point is put back onto the sphere.
 Point sphere_point(const Sphere& sphere, const Vec3& near_surface) {
   const Vec3 normal = normalize(near_surface - sphere.center);
   return {sphere.center + sphere.radius * normal, normal, normal, unit_or_zero({-normal.y, normal.x, 0})};
+}
+
+// u and v, longitude and latitude, from 0 to 1 each.
+void add_coordinates(Point& point, double radius) {
+  const Vec3& n = point.geometric_normal;
+  const double from_axis = std::hypot(n.x, n.y), longitude = std::atan2(n.y, n.x);
+  point.uv = {longitude / (2 * kPi) + (longitude < 0 ? 1 : 0), std::atan2(n.z, from_axis) / kPi + 0.5};
+  point.derivatives = {2 * kPi * radius * from_axis * point.tangent, kPi * radius * cross(n, point.tangent)};
 }
 
 Point triangle_point(const Surface& surface, const RTCHit& hit) {
@@ -166,7 +182,15 @@ Point triangle_point(const Surface& surface, const RTCHit& hit) {
   Vec3 tangent;
   if (!surface.tangents.empty())
     tangent = mesh.normals.empty() ? surface.tangents[hit.primID] : unit_or_zero(blend(surface.tangents));
-  return {blend(mesh.positions), geometric, size > 0 ? shading / size : geometric, tangent};
+  Point point = {blend(mesh.positions), geometric, size > 0 ? shading / size : geometric, tangent};
+  if (!surface.derivatives.empty()) {
+    const auto mix = [&](double a, double b, double c) { return (1 - u - v) * a + u * b + v * c; };
+    const Point2 &a = mesh.uvs[i], &b = mesh.uvs[j], &c = mesh.uvs[k];
+    point.uv = {mix(a.x, b.x, c.x), mix(a.y, b.y, c.y)};
+    const UvDerivatives &p = surface.derivatives[i], &q = surface.derivatives[j], &r = surface.derivatives[k];
+    point.derivatives = {(1 - u - v) * p.du + u * q.du + v * r.du, (1 - u - v) * p.dv + u * q.dv + v * r.dv};
+  }
+  return point;
 }
 
 RTCRay to_embree(const Ray& ray, float distance) {
@@ -220,6 +244,8 @@ void EmbreeScene::Impl::collect(const Scene& source) {
   for (Surface& surface : surfaces) {
     surface.offset = surface.sphere ? offset_of(*surface.sphere) : offset_of(*surface.mesh);
     if (surface.mesh) surface.tangents = tangents_of(*surface.mesh);
+    surface.has_relief = surface.object >= 0 && has_relief(source, surface.object);
+    if (surface.mesh && surface.has_relief) surface.derivatives = vertex_derivatives(*surface.mesh);
   }
 }
 
@@ -263,15 +289,18 @@ std::optional<SurfaceHit> EmbreeScene::intersect(const Ray& ray) const {
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
 
   const Surface& surface = impl_->surfaces[query.hit.geomID];
-  const Point point =
+  Point point =
       surface.sphere
           ? sphere_point(*surface.sphere, ray.origin + static_cast<double>(query.ray.tfar) * ray.direction)
           : triangle_point(surface, query.hit);
+  if (surface.sphere && surface.has_relief) add_coordinates(point, surface.sphere->radius);
   return SurfaceHit{
       .position = point.position,
       .geometric_normal = point.geometric_normal,
       .shading_normal = point.shading_normal,
       .tangent = point.tangent,
+      .uv = point.uv,
+      .derivatives = point.derivatives,
       .distance = length(point.position - ray.origin),
       .offset = surface.offset,
       .object = surface.object,

@@ -6,6 +6,7 @@
 
 #include "runtime/tracer/ray.h"
 #include "runtime/tracer/scene.h"
+#include "runtime/tracer/tangents.h"
 
 namespace sunbeam {
 
@@ -17,6 +18,9 @@ struct SurfaceHit {
   // normal. u of a sphere is the longitude about its z axis. Zero where no direction is known: without
   // texture coordinates, where they are degenerate, at the poles of a sphere.
   Vec3 tangent;
+  // Texture coordinates and dp/du, dp/dv, interpolated; only for objects whose material has a relief, else 0.
+  Point2 uv;
+  UvDerivatives derivatives;
   double distance;  // from the origin of the ray
   double offset;    // a ray that starts this far above `position` does not hit the same surface again
   int object;       // index into Scene::objects, -1 for a light

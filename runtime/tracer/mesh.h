@@ -29,4 +29,25 @@ Mesh quad_mesh(const Vec3& corner, const Vec3& edge_u, const Vec3& edge_v);
 Mesh torus_mesh(const Vec3& center, double major_radius, double minor_radius, const Vec3& rotate_deg,
                 int resolution);
 
+// A sphere about the origin: `resolution` segments around z and half as many from pole to pole, exact
+// normals. u is the longitude and v the latitude, each from 0 to 1; vertices are doubled where u starts again
+// and at the poles.
+Mesh sphere_mesh(double radius, int resolution);
+
+// v -> scale * R v + translate, R turning about x, then y, then z.
+struct Transform {
+  double scale = 1;
+  Vec3 rotate_deg = {};
+  Vec3 translate = {};
+
+  Vec3 point(const Vec3& p) const;
+  Vec3 direction(const Vec3& d) const;  // turned only
+};
+Mesh transformed(Mesh mesh, const Transform& transform);
+
+// Two triangles for each cell of a grid of (columns + 1) x (rows + 1) vertices, stored column by column; one
+// where a cell has only three corners, because its first or last column or row lies in one point. Column by
+// row is the winding's order.
+void connect_grid(Mesh& mesh, std::uint32_t columns, std::uint32_t rows);
+
 }  // namespace sunbeam

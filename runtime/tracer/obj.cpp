@@ -128,22 +128,9 @@ Vec3 normal_of(const std::string& path, const tinyobj::attrib_t& attributes, int
   return normalize(normal);
 }
 
-// Height of the triangle over its longest edge, relative to that edge, must exceed float rounding.
-bool has_area(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double longest = std::max({length(b - a), length(c - b), length(a - c)});
-  return length(cross(b - a, c - a)) > 1e-7 * longest * longest;
-}
-
-void require_areas(const std::string& path, const Mesh& mesh) {
-  for (const auto& [a, b, c] : mesh.triangles)
-    if (const Vec3& p = mesh.positions[a]; !has_area(p, mesh.positions[b], mesh.positions[c]))
-      throw Error(fmt::format("{}: triangle without area at ({:g}, {:g}, {:g}) after scale and translate",
-                              path, p.x, p.y, p.z));
-}
-
 }  // namespace
 
-Mesh load_obj(const std::string& path, double scale, const Vec3& translate) {
+LoadedMesh load_obj(const std::string& path) {
   const std::string text = read_file(path);
   ObjCheck(path).check(text);
   const ObjData data = parse(path, text);
@@ -152,7 +139,7 @@ Mesh load_obj(const std::string& path, double scale, const Vec3& translate) {
   bool has_normals = true, has_uvs = true;
   for (const auto& shape : data.shapes)
     for (const auto& corner : shape.mesh.indices) {
-      mesh.positions.push_back(scale * triple(data.attributes.vertices, corner.vertex_index) + translate);
+      mesh.positions.push_back(triple(data.attributes.vertices, corner.vertex_index));
       has_normals = has_normals && corner.normal_index >= 0;
       if (has_normals) mesh.normals.push_back(normal_of(path, data.attributes, corner.normal_index));
       has_uvs = has_uvs && corner.texcoord_index >= 0;
@@ -162,9 +149,7 @@ Mesh load_obj(const std::string& path, double scale, const Vec3& translate) {
   if (!has_uvs) mesh.uvs.clear();
   for (std::uint32_t i = 0; i + 2 < mesh.positions.size(); i += 3)
     mesh.triangles.push_back({i, i + 1, i + 2});
-  if (mesh.triangles.empty()) throw Error(path + ": the mesh has no face");
-  require_areas(path, mesh);
-  return mesh;
+  return checked_mesh(path, std::move(mesh));
 }
 
 }  // namespace sunbeam

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "runtime/tracer/relief.h"
 #include "sunbeam/core/frame.h"
 
 namespace sunbeam {
@@ -38,8 +39,12 @@ struct PathTracer::Vertex {
   double offset;
   const Bsdf* bsdf;
   double film_thickness_nm;
+  std::optional<Vec3> smooth_normal;  // on the viewer's side, where a relief turned that of the frame
 
   bool is_above(const Vec3& world) const { return dot(world, geometric_normal) > 0; }
+  double shadowing(const Vec3& world) const {
+    return smooth_normal ? terminator_shadowing(frame.normal, *smooth_normal, world) : 1;
+  }
   FirstHit as_first_hit(double distance) const {
     return {.on_surface = true,
             .albedo = {},  // known when the BSDF is sampled
@@ -62,16 +67,25 @@ PathTracer::Vertex PathTracer::make_vertex(const Ray& ray, const SurfaceHit& hit
   const double side = dot(wo, hit.geometric_normal) < 0 ? -1 : 1;
   const auto material =
       static_cast<std::size_t>(scene_.objects[static_cast<std::size_t>(hit.object)].material);
-  const Vec3 tangent =
-      turned_tangent(hit.tangent, hit.shading_normal, scene_.materials[material].tangent_rotation_deg);
-  const Frame frame = Frame::from_normal_and_tangent(bend_towards(side * hit.shading_normal, wo), tangent);
+  const SceneMaterial& description = scene_.materials[material];
+  const Vec3 geometric = side * hit.geometric_normal;
+  Vec3 normal = bend_towards(side * hit.shading_normal, wo);
+  std::optional<Vec3> smooth;
+  if (description.relief) {
+    smooth = normal;
+    const Vec3 turned = relief_normal(*description.relief, hit.uv, hit.shading_normal, hit.derivatives);
+    normal = valid_normal(side * turned, geometric, wo);
+  }
+  const Vec3 tangent = turned_tangent(hit.tangent, hit.shading_normal, description.tangent_rotation_deg);
+  const Frame frame = Frame::from_normal_and_tangent(normal, tangent);
   return {hit.position,
-          side * hit.geometric_normal,
+          geometric,
           frame,
           frame.to_local(wo),
           hit.offset,
           bsdfs_[material],
-          scene_.materials[material].film_thickness_nm.value_or(0)};
+          description.film_thickness_nm.value_or(0),
+          smooth};
 }
 
 // What the end of `ray` emits, weighted by MIS if the ray was drawn with density `bsdf_pdf`. Without one
@@ -95,7 +109,9 @@ Rgb PathTracer::direct_light(const Vertex& vertex, Rng& rng, PathCounts& counts)
   if (!light || !vertex.is_above(light->wi)) return {};
   const Vec3 wi = vertex.frame.to_local(light->wi);
   if (wi.z <= 0) return {};
-  const Rgb f = vertex.bsdf->eval(vertex.wo, wi, rng);
+  const double shadowing = vertex.shadowing(light->wi);
+  if (shadowing == 0) return {};
+  const Rgb f = vertex.bsdf->eval(vertex.wo, wi, rng) * shadowing;
   if (is_black(f)) return {};
   ++counts.rays;
   if (geometry_.occluded(vertex.leave(light->wi), light->distance)) return {};
@@ -125,6 +141,9 @@ Rgb PathTracer::radiance(Ray ray, Rng& rng, PathCounts& counts, FirstHit& first)
       return Rgb(std::numeric_limits<double>::quiet_NaN());
     const Vec3 wi = vertex.frame.to_world(sample->wi);
     if (sample->wi.z <= 0 || !vertex.is_above(wi)) return result;
+    const double shadowing = vertex.shadowing(wi);
+    if (shadowing == 0) return result;
+    throughput *= shadowing;
     if (bounce >= scene_.render.roulette_after) {
       // Colours outside Rec.709 have negative components, which weigh as much.
       const double survival =

@@ -4,7 +4,7 @@
 // above the surface. Its local x axis is the direction of increasing u (turned by the material's
 // tangent_rotation_deg), the same seen from either side; y follows, for the frame stays right-handed. Light
 // must arrive above the shading AND above the geometric surface, hence none leaks through smooth-shaded
-// meshes.
+// meshes. What a relief (bump map) turns the normal by is corrected as runtime/tracer/relief.h tells.
 #pragma once
 
 #include <cstdint>

@@ -4,10 +4,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
 
 #include "runtime/tracer/image_io.h"
-#include "runtime/tracer/obj.h"
+#include "runtime/tracer/mesh_file.h"
+#include "runtime/tracer/scales.h"
 #include "runtime/tracer/sky.h"
+#include "runtime/tracer/snake.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/frame.h"
 
@@ -163,9 +169,49 @@ std::optional<double> optional_number(const ConfigTable& table, std::string_view
   return table.number(key, {low, Range().high});
 }
 
+// Scales by number: `around` of them to a unit of u and `rows` rows to a unit of v. The default is the number
+// of rows of regular hexagons where a unit of v is as long as one of u.
+Relief read_scales(const ConfigTable& table) {
+  constexpr int kMapPixels = 2048;  // across the whole map, which has all scales of a unit of u
+  const int around = table.integer("around", 1, kMaxScaleColumns);
+  const bool is_voronoi = table.choice("pattern", {"hexagonal", "voronoi"}, 0) == 1;
+  const double rows = table.number("rows", {1, 1e5}, 2 * around / std::numbers::sqrt3);
+  ScaleLayout layout;
+  if (is_voronoi) {
+    layout.columns = around;
+    layout.rows = std::clamp(2 * static_cast<int>(std::lround(rows / 2)), 2, kMaxScaleColumns);
+    layout.jitter = table.number("jitter", {0, 1}, 1.0);
+    layout.seed = static_cast<std::uint64_t>(table.integer("seed", 0, std::numeric_limits<int>::max(), 1));
+  }
+  const double edge = table.number("edge", {0.02, 0.5}, 0.35);
+  const int pixels = std::clamp(kMapPixels / layout.columns, 8, 64);
+  return {.map = std::make_shared<HeightMap>(scale_height_map(layout, edge, pixels)),
+          .tiles = {static_cast<double>(around) / layout.columns, rows / layout.rows},
+          .height = table.number("height", {-2, 2}, 0.12) / around};
+}
+
+Relief read_bump(const ConfigTable& table) {
+  const HeightMap map = load_named_file(table, load_height_map);
+  const auto tiles = table.has("tiles") ? table.numbers("tiles", {1e-3, 1e5}) : std::vector<double>{1, 1};
+  if (tiles.size() != 2)
+    table.fail("tiles", fmt::format("found {} numbers; allowed: 2, along u and v", tiles.size()));
+  return {.map = std::make_shared<HeightMap>(map),
+          .tiles = {tiles[0], tiles[1]},
+          .height = table.number("height", {-2, 2}) / tiles[0]};
+}
+
+std::optional<Relief> read_relief(const ConfigTable& table) {
+  if (table.has("scales") && table.has("bump"))
+    table.fail("bump", "cannot stand beside scales; allowed: one of the two");
+  if (table.has("scales")) return read_scales(table.table("scales"));
+  if (table.has("bump")) return read_bump(table.table("bump"));
+  return {};
+}
+
 SceneMaterial read_material(const ConfigTable& table) {
   SceneMaterial material;
   material.name = table.string("name");
+  material.relief = read_relief(table);
   if (table.choice("type", {"skin", "diffuse"}) == 1) {
     material.type = SceneMaterial::Type::diffuse;
     material.albedo = table.rgb("albedo", kUnit, material.albedo);
@@ -191,43 +237,73 @@ std::vector<SceneMaterial> read_materials(const ConfigTable& config) {
   return materials;
 }
 
+// `center` of the shapes that have one moves them after all else.
+Transform read_transform(const ConfigTable& table) {
+  return {.scale = table.number("scale", kLength, 1.0),
+          .rotate_deg = point(table, "rotate_deg", Vec3{}),
+          .translate = point(table, "translate", Vec3{})};
+}
+
 Mesh read_torus(const ConfigTable& table) {
   const double major = table.number("major_radius", kLength);
   const double minor = table.number("minor_radius", kLength);
   if (minor >= major)
     table.fail("minor_radius", fmt::format("found {:g}; allowed: below major_radius, {:g}", minor, major));
-  return torus_mesh(point(table, "center"), major, minor, point(table, "rotate_deg", Vec3{}),
-                    table.integer("resolution", 8, 4096, 128));
+  return torus_mesh({}, major, minor, {}, table.integer("resolution", 8, 4096, 128));
 }
 
 Mesh read_plane(const ConfigTable& table) {
-  const Vec3 center = point(table, "center", Vec3{});
   const Frame frame = Frame::from_normal(direction(table, "normal", Vec3{0, 0, 1}));
   const double half_size = table.number("half_size", kLength, 50.0);
   const Vec3 u = 2 * half_size * frame.tangent, v = 2 * half_size * frame.bitangent;
-  return quad_mesh(center - 0.5 * (u + v), u, v);
+  return quad_mesh(-0.5 * (u + v), u, v);
 }
 
-Mesh read_mesh(const ConfigTable& table) {
-  const double scale = table.number("scale", kLength, 1.0);
-  const Vec3 translate = point(table, "translate", Vec3{});
-  const Mesh mesh =
-      load_named_file(table, [&](const std::string& path) { return load_obj(path, scale, translate); });
-  for (const Vec3& position : mesh.positions) require_coordinates(table, "file", position);
+Mesh read_snake(const ConfigTable& table) {
+  SnakeShape shape;
+  shape.body_radius = table.number("body_radius", kLength, shape.body_radius);
+  shape.turns = table.number("turns", {1, 6}, shape.turns);
+  shape.resolution = table.integer("resolution", 16, 1024, shape.resolution);
+  return snake_mesh(shape);
+}
+
+Mesh read_mesh(const ConfigTable& table, std::vector<std::string>& warnings) {
+  const LoadedMesh loaded = load_named_file(table, load_mesh);
+  if (loaded.dropped > 0)
+    warnings.push_back(
+        fmt::format("{}: {} triangles without area are left out", table.string("file"), loaded.dropped));
+  return loaded.mesh;
+}
+
+// A sphere is exact, or a mesh if it has a `resolution`; only that can be turned.
+std::variant<Sphere, Mesh> read_sphere(const ConfigTable& table, const Transform& transform) {
+  const double radius = table.number("radius", kLength);
+  if (table.has("resolution"))
+    return transformed(sphere_mesh(radius, table.integer("resolution", 8, 4096)), transform);
+  if (table.has("rotate_deg")) table.fail("rotate_deg", "turns no exact sphere; allowed beside resolution");
+  return Sphere{transform.translate, transform.scale * radius};
+}
+
+void require_mesh_coordinates(const ConfigTable& table, const Mesh& mesh) {
+  for (const Vec3& position : mesh.positions)
+    for (const double coordinate : {position.x, position.y, position.z})
+      if (std::abs(coordinate) > kMaxCoordinate)
+        table.fail("type", fmt::format("the object reaches {:g}; allowed: {:g} to {:g}", coordinate,
+                                       -kMaxCoordinate, kMaxCoordinate));
+}
+
+std::variant<Sphere, Mesh> read_shape(const ConfigTable& table, std::vector<std::string>& warnings) {
+  const int type = table.choice("type", {"sphere", "torus", "plane", "mesh", "snake"});
+  Transform transform = read_transform(table);
+  if (type <= 2) transform.translate = transform.translate + point(table, "center", Vec3{});
+  if (type == 0) return read_sphere(table, transform);
+  const Mesh mesh = transformed(type == 1   ? read_torus(table)
+                                : type == 2 ? read_plane(table)
+                                : type == 3 ? read_mesh(table, warnings)
+                                            : read_snake(table),
+                                transform);
+  require_mesh_coordinates(table, mesh);
   return mesh;
-}
-
-std::variant<Sphere, Mesh> read_shape(const ConfigTable& table) {
-  switch (table.choice("type", {"sphere", "torus", "plane", "mesh"})) {
-    case 0:
-      return Sphere{point(table, "center"), table.number("radius", kLength)};
-    case 1:
-      return read_torus(table);
-    case 2:
-      return read_plane(table);
-    default:
-      return read_mesh(table);
-  }
 }
 
 int find_material(const ConfigTable& table, const std::vector<SceneMaterial>& materials) {
@@ -255,7 +331,7 @@ Scene read_scene(const ConfigTable& config) {
   for (const auto& light : config.tables("light")) read_light(light, scene);
   scene.materials = read_materials(config);
   for (const auto& table : config.tables("object"))
-    scene.objects.push_back({read_shape(table), find_material(table, scene.materials)});
+    scene.objects.push_back({read_shape(table, scene.warnings), find_material(table, scene.materials)});
   config.finish();
   if (scene.objects.empty()) config.fail("object", "found none; allowed: at least one [[object]]");
   return scene;

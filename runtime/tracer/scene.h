@@ -10,6 +10,7 @@
 #include "runtime/config/config.h"
 #include "runtime/tracer/image.h"
 #include "runtime/tracer/mesh.h"
+#include "runtime/tracer/relief.h"
 #include "sunbeam/core/vec.h"
 
 namespace sunbeam {
@@ -75,6 +76,7 @@ struct SceneMaterial {
   // Turns the local x axis of the BSDF away from the direction of increasing u, counter-clockwise about the
   // shading normal on the outer side of the surface (that of its winding).
   double tangent_rotation_deg = 0;
+  std::optional<Relief> relief;  // bump map
 };
 
 struct Sphere {
@@ -99,6 +101,7 @@ struct Scene {
   std::vector<DirectionalLight> directional_lights;
   std::vector<SceneMaterial> materials;
   std::vector<SceneObject> objects;
+  std::vector<std::string> warnings;  // a line each, for people: what was left out of files
 };
 
 // Throws Error for anything missing, out of range, unknown or degenerate, in the file or in what it names.

@@ -18,6 +18,15 @@ std::vector<Vec3> triangle_tangents(const Mesh& mesh);
 // So u may start again at a seam without a trace, while mirrored and unrelated charts stay apart.
 std::vector<Vec3> vertex_tangents(const Mesh& mesh);
 
+// dp/du and dp/dv, world length for a unit of u and of v. Both zero where the coordinates span no area.
+struct UvDerivatives {
+  Vec3 du, dv;
+};
+
+// One for each position of a mesh with texture coordinates, else none: the mean over the triangles around the
+// vertex and, on a mesh with normals, over its copies at a seam, as with vertex_tangents().
+std::vector<UvDerivatives> vertex_derivatives(const Mesh& mesh);
+
 inline Vec3 unit_or_zero(const Vec3& v) {
   const double size = length(v);
   return size > 0 ? v / size : Vec3{};

@@ -90,7 +90,7 @@ TEST(EmbreeScene, ObjQuadWithNormalsScaleAndTranslation) {
                                         "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n"
                                         "vn -1 0 1\nvn 1 0 1\nvn 1 0 1\nvn -1 0 1\n"
                                         "f 1//1 2//2 3//3 4//4\n");
-  const Scene scene = with(load_obj(path, 2, {0, 0, 3}));
+  const Scene scene = with(transformed(load_obj(path).mesh, {.scale = 2, .translate = {0, 0, 3}}));
   const EmbreeScene geometry(scene);
   const auto middle = geometry.intersect({{0, 0.1, 9}, {0, 0, -1}});
   ASSERT_TRUE(middle);
@@ -105,7 +105,7 @@ TEST(EmbreeScene, ObjQuadWithNormalsScaleAndTranslation) {
 
 TEST(EmbreeScene, ObjWithoutNormalsIsFlatAndNegativeIndicesWork) {
   const ScratchFolder folder;
-  const Mesh mesh = load_obj(folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n"), 1, {});
+  const Mesh mesh = load_obj(folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n")).mesh;
   EXPECT_TRUE(mesh.normals.empty());
   ASSERT_EQ(mesh.triangles.size(), 1u);
   const Scene scene = with(mesh);

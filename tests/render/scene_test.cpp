@@ -98,6 +98,61 @@ TEST(Scene, ReadsEveryKey) {
   EXPECT_EQ(std::get<Sphere>(scene.objects[1].shape).radius, 3);
 }
 
+TEST(Scene, ReliefsAreInUnitsOfTheSurface) {
+  const ScratchFolder folder;
+  write_height_map(folder.file("h.exr"), {2, 1, {0.0f, 1.0f}});
+  const Scene scene = load_scene(folder.write("a.toml", kCamera + kSphere + R"(
+    [[material]]
+    name = "grey"
+    type = "diffuse"
+    scales = { around = 10, height = 0.2 }
+    [[material]]
+    name = "voronoi"
+    type = "skin"
+    scales = { pattern = "voronoi", around = 10, rows = 40, height = 0.2 }
+    [[material]]
+    name = "file"
+    type = "skin"
+    bump = { file = "h.exr", tiles = [4, 5], height = 0.1 }
+  )"));
+  const Relief &hexagons = *scene.materials[0].relief, &voronoi = *scene.materials[1].relief,
+               &file = *scene.materials[2].relief;
+  EXPECT_NEAR(hexagons.height, 0.02, 1e-12);  // of a unit of u, which ten scales share
+  EXPECT_NEAR(hexagons.tiles.x, 10, 1e-12);
+  EXPECT_NEAR(hexagons.tiles.y, 10 / std::sqrt(3.0), 1e-12);  // a tile holds two rows
+  EXPECT_NEAR(voronoi.tiles.x, 1, 1e-12);
+  EXPECT_NEAR(voronoi.tiles.y, 1, 1e-12);
+  EXPECT_NEAR(file.height, 0.025, 1e-12);
+  EXPECT_EQ(file.tiles.y, 5);
+  EXPECT_EQ(file.map->values, (std::vector<float>{0, 1}));
+}
+
+TEST(Scene, ObjectsAreScaledThenTurnedThenMoved) {
+  const Scene scene = scene_from(kCamera + kMaterial + R"(
+    [[object]]
+    type = "torus"
+    major_radius = 1
+    minor_radius = 0.5
+    scale = 2
+    rotate_deg = [90, 0, 0]
+    translate = [10, 0, 0]
+    center = [0, 5, 0]
+    material = "grey"
+    [[object]]
+    type = "sphere"
+    radius = 1
+    scale = 3
+    translate = [1, 2, 3]
+    material = "grey"
+  )");
+  const Mesh& torus = std::get<Mesh>(scene.objects[0].shape);
+  for (const Vec3& p : torus.positions) EXPECT_LE(std::abs(p.y - 5), 1 + 1e-12);  // its axis is y now
+  EXPECT_NEAR(torus.positions[0].x, 10 + 2 * 1.5, 1e-12);
+  const Sphere& sphere = std::get<Sphere>(scene.objects[1].shape);
+  EXPECT_EQ(sphere.radius, 3);
+  EXPECT_EQ(sphere.center.z, 3);
+}
+
 TEST(Scene, EnvironmentFileIsLoadedAndScaled) {
   const ScratchFolder folder;
   Image map(4, 2);
@@ -182,6 +237,25 @@ INSTANTIATE_TEST_SUITE_P(
                  "key 'render.spp': found 0"},
         BadScene{"negative_radius", object("type = 'sphere'\ncenter = [0, 0, 0]\nradius = -1\n"),
                  "key 'object[0].radius': found -1"},
+        BadScene{"turned_exact_sphere", object("type = 'sphere'\nradius = 1\nrotate_deg = [0, 90, 0]\n"),
+                 "key 'object[0].rotate_deg': turns no exact sphere"},
+        BadScene{"far_object", object("type = 'torus'\nmajor_radius = 9e5\nminor_radius = 5e5\nscale = 2\n"),
+                 "key 'object[0].type': the object reaches"},
+        BadScene{"snake_turns", object("type = 'snake'\nturns = 0.5\n"), "found 0.5; allowed: 1 to 6"},
+        BadScene{
+            "scales_and_bump",
+            material("name = 'b'\ntype = 'diffuse'\nscales = { around = 3 }\nbump = { file = 'a.exr' }\n"),
+            "key 'material[1].bump': cannot stand beside scales"},
+        BadScene{"scales_without_number", material("name = 'b'\ntype = 'skin'\nscales = {}\n"),
+                 "key 'material[1].scales.around'"},
+        BadScene{"unknown_scales_key",
+                 material("name = 'b'\ntype = 'skin'\nscales = { around = 3, hight = 1 }\n"),
+                 "nearest valid key is 'height'"},
+        BadScene{"jitter_of_hexagons",
+                 material("name = 'b'\ntype = 'skin'\nscales = { around = 3, jitter = 1 }\n"),
+                 "'material[1].scales.jitter': is not known"},
+        BadScene{"bump_file", material("name = 'b'\ntype = 'skin'\nbump = { file = 'a.jpg', height = 1 }\n"),
+                 "key 'material[1].bump.file': a.jpg: extension is '.jpg'"},
         BadScene{"fat_torus",
                  object("type = 'torus'\ncenter = [0, 0, 0]\nmajor_radius = 1\nminor_radius = 1\n"),
                  "key 'object[0].minor_radius': found 1; allowed: below major_radius, 1"},
@@ -278,8 +352,9 @@ TEST(Scene, BadMeshesAreRefused) {
   expect_mesh_error(corners + "vn 0 0 0\nf 1//1 2//1 3//1\n", "normal 1 has length 0");
   expect_mesh_error(corners, "the mesh has no face");
   expect_mesh_error("", "the mesh has no face");
-  expect_mesh_error("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "triangle without area");
-  expect_mesh_error(corners + "f 1 2 2\n", "triangle without area");
+  expect_mesh_error("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n",
+                    "found 1 triangles without area and no other face");
+  expect_mesh_error(corners + "f 1 2 2\n", "found 1 triangles without area and no other face");
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ SurfaceHit hit_below(const Mesh& mesh, double x, double y) {
 
 Mesh obj_mesh(const std::string& text) {
   const ScratchFolder folder;
-  return load_obj(folder.write("m.obj", text), 1, {});
+  return load_obj(folder.write("m.obj", text)).mesh;
 }
 
 // --- Frame ---

@@ -1,0 +1,47 @@
+#include <fmt/format.h>
+
+#include "bake/cli/commands.h"
+#include "runtime/tracer/height_map.h"
+#include "runtime/tracer/scales.h"
+#include "sunbeam/core/error.h"
+#include "sunbeam/core/file.h"
+
+namespace sunbeam {
+namespace {
+
+ScaleLayout layout_of(const TextureOptions& options) {
+  if (options.rows % 2 != 0)
+    throw Error(
+        fmt::format("--rows: found {}; allowed: an even number, for rows are offset in turns", options.rows));
+  if (!(options.jitter >= 0 && options.jitter <= 1))
+    throw Error(fmt::format("--jitter: found {:g}; allowed: 0 to 1", options.jitter));
+  if (!(options.edge >= 0.02 && options.edge <= 0.5))
+    throw Error(fmt::format("--edge: found {:g}; allowed: 0.02 to 0.5", options.edge));
+  const bool is_voronoi = options.pattern == "voronoi";
+  return {options.columns, options.rows, is_voronoi ? options.jitter : 0, options.seed};
+}
+
+void require_size(const TextureOptions& options, const Point2& tile) {
+  constexpr double kMaxPixels = 1 << 27;
+  const double pixels = tile.x * tile.y * square(options.pixels_per_scale);
+  if (pixels > kMaxPixels)
+    throw Error(fmt::format("--pixels-per-scale: found {}, {:.3g} pixels in all; allowed: {:.3g}",
+                            options.pixels_per_scale, pixels, kMaxPixels));
+}
+
+}  // namespace
+
+int run_texture(const TextureOptions& options) {
+  const ScaleLayout layout = layout_of(options);
+  require_height_map_extension(options.output);
+  require_size(options, tile_size(layout));
+  require_writable(options.output);
+  const HeightMap map = scale_height_map(layout, options.edge, options.pixels_per_scale);
+  write_height_map(options.output, map);
+  const Point2 size = tile_size(layout);
+  fmt::print(stderr, "{}: {} x {} pixels, {:g} x {:.4f} scale widths, {} scales\n", options.output, map.width,
+             map.height, size.x, size.y, layout.columns * layout.rows);
+  return 0;
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,165 @@
+#include "runtime/tracer/scales.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "sunbeam/core/rng.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr double kRowSpacing = std::numbers::sqrt3 / 2;
+
+Point2 operator+(const Point2& a, const Point2& b) { return {a.x + b.x, a.y + b.y}; }
+Point2 operator-(const Point2& a, const Point2& b) { return {a.x - b.x, a.y - b.y}; }
+double length2(const Point2& a) { return square(a.x) + square(a.y); }
+
+double wrap(double x, double period) {
+  const double inside = x - period * std::floor(x / period);
+  return inside < period ? inside : 0;  // rounding may reach the period
+}
+
+// Finds the points of a tile, repeated over the plane, that lie near a place: by bins about one unit wide.
+class PeriodicBins {
+ public:
+  PeriodicBins(const std::vector<Point2>& points, const Point2& size)
+      : points_(points),
+        size_(size),
+        columns_(std::max(1, static_cast<int>(size.x))),
+        rows_(std::max(1, static_cast<int>(size.y))),
+        bins_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {
+    for (std::size_t i = 0; i < points.size(); ++i) bins_[bin_of(points[i])].push_back(i);
+  }
+
+  // Calls use(index, position) for every copy of a point within `radius` of `place`, and some further ones.
+  template <class Use>
+  void for_near(const Point2& place, double radius, Use use) const {
+    const int left = column(place.x - radius), right = column(place.x + radius);
+    const int bottom = row(place.y - radius), top = row(place.y + radius);
+    for (int j = bottom; j <= top; ++j)
+      for (int i = left; i <= right; ++i) {
+        const int tile_x = floor_div(i, columns_), tile_y = floor_div(j, rows_);
+        const Point2 shift = {tile_x * size_.x, tile_y * size_.y};
+        for (const std::size_t point : bins_[bin(i - tile_x * columns_, j - tile_y * rows_)])
+          use(point, points_[point] + shift);
+      }
+  }
+
+  // Tells the bins that a point left `from`; the list of points already holds its new place.
+  void moved(std::size_t point, const Point2& from) {
+    std::erase(bins_[bin_of(from)], point);
+    bins_[bin_of(points_[point])].push_back(point);
+  }
+
+ private:
+  static int floor_div(int a, int b) { return (a >= 0 ? a : a - b + 1) / b; }
+  int column(double x) const { return static_cast<int>(std::floor(x / size_.x * columns_)); }
+  int row(double y) const { return static_cast<int>(std::floor(y / size_.y * rows_)); }
+  std::size_t bin(int i, int j) const {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i);
+  }
+  std::size_t bin_of(const Point2& p) const {
+    return bin(std::min(column(p.x), columns_ - 1), std::min(row(p.y), rows_ - 1));
+  }
+
+  const std::vector<Point2>& points_;
+  Point2 size_;
+  int columns_, rows_;
+  std::vector<std::vector<std::size_t>> bins_;
+};
+
+std::vector<Point2> hexagonal_grid(const ScaleLayout& layout) {
+  std::vector<Point2> centers;
+  for (int j = 0; j < layout.rows; ++j)
+    for (int i = 0; i < layout.columns; ++i)
+      centers.push_back({i + (j % 2 == 0 ? 0.25 : 0.75), (j + 0.5) * kRowSpacing});
+  return centers;
+}
+
+class HardDisks {
+ public:
+  HardDisks(std::vector<Point2>& centers, const Point2& size, double distance)
+      : centers_(centers), size_(size), distance_(distance), bins_(centers, size) {}
+
+  void sweep(double step, Rng& rng) {
+    for (std::size_t i = 0; i < centers_.size(); ++i) {
+      const Point2 move = {step * (2 * rng.uniform() - 1), step * (2 * rng.uniform() - 1)};
+      const Point2 from = centers_[i], to = from + move;
+      const Point2 wrapped = {wrap(to.x, size_.x), wrap(to.y, size_.y)};
+      if (!is_free(i, wrapped)) continue;
+      centers_[i] = wrapped;
+      bins_.moved(i, from);
+    }
+  }
+
+ private:
+  // A tile so narrow that a centre meets its own copies has them at the width of the tile, which never
+  // changes.
+  bool is_free(std::size_t mover, const Point2& place) const {
+    bool free = true;
+    bins_.for_near(place, distance_, [&](std::size_t other, const Point2& at) {
+      if (other != mover && length2(at - place) < square(distance_)) free = false;
+    });
+    return free;
+  }
+
+  std::vector<Point2>& centers_;
+  Point2 size_;
+  double distance_;
+  PeriodicBins bins_;
+};
+
+double dome(double t) { return t >= 1 ? 1 : 1 - square(1 - std::max(t, 0.0)); }
+
+double cell_height(const PeriodicBins& bins, const Point2& place, double edge) {
+  constexpr double kReach = 2.25;  // beyond, no border is nearer than half a scale width
+  double nearest2 = 1e300;
+  std::size_t own = 0;
+  Point2 center;
+  bins.for_near(place, kReach, [&](std::size_t i, const Point2& at) {
+    if (const double d2 = length2(at - place); d2 < nearest2) nearest2 = d2, own = i, center = at;
+  });
+  double height = 1;
+  bins.for_near(place, kReach, [&](std::size_t i, const Point2& at) {
+    const double separation2 = length2(at - center);
+    if (i == own && separation2 < 1e-12) return;
+    const double to_border = (length2(at - place) - nearest2) / (2 * std::sqrt(separation2));
+    height *= dome(to_border / edge);
+  });
+  return height;
+}
+
+}  // namespace
+
+Point2 tile_size(const ScaleLayout& layout) {
+  return {static_cast<double>(layout.columns), layout.rows * kRowSpacing};
+}
+
+double min_center_distance(const ScaleLayout& layout) { return 1 - 0.3 * layout.jitter; }
+
+std::vector<Point2> scale_centers(const ScaleLayout& layout) {
+  constexpr int kSweeps = 200;  // the grid's order is forgotten long before
+  std::vector<Point2> centers = hexagonal_grid(layout);
+  if (layout.jitter == 0) return centers;
+  HardDisks disks(centers, tile_size(layout), min_center_distance(layout));
+  Rng rng(layout.seed, 0);
+  for (int i = 0; i < kSweeps; ++i) disks.sweep(0.3 * layout.jitter, rng);
+  return centers;
+}
+
+HeightMap scale_height_map(const ScaleLayout& layout, double edge, int pixels_per_scale) {
+  const Point2 size = tile_size(layout);
+  const std::vector<Point2> centers = scale_centers(layout);
+  const PeriodicBins bins(centers, size);
+  HeightMap map{static_cast<int>(std::lround(size.x * pixels_per_scale)),
+                static_cast<int>(std::lround(size.y * pixels_per_scale)),
+                {}};
+  for (int row = 0; row < map.height; ++row)
+    for (int column = 0; column < map.width; ++column) {
+      const Point2 place = {size.x * (column + 0.5) / map.width, size.y * (1 - (row + 0.5) / map.height)};
+      map.values.push_back(static_cast<float>(cell_height(bins, place, edge)));
+    }
+  return map;
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,31 @@
+// A coiled snake, resting, its head raised from the middle of the coil.
+#pragma once
+
+#include "runtime/tracer/mesh.h"
+
+namespace sunbeam {
+
+struct SnakeShape {
+  double body_radius = 0.25;  // half the width of the body where it is thickest
+  double turns = 2.5;         // of the coil on the ground, 1 to 6, rounded to sixteenths
+  int resolution = 128;  // vertices around the body, 16 to 1024; half as many to the same length along it
+};
+
+// About the z axis, on the plane z = 0, looking along -y. Closed but for the eyes, which are spheres of their
+// own sunk into the head; winding and unit normals point outwards. u runs once around the body, from the
+// middle of the belly over the right side to the back (u = 1/2), and starts again there. v runs from the tip
+// of the tail to the snout, and a step along the body changes it by its length over the girth: a unit of v is
+// as long as one of u everywhere, so that scales are not stretched; their number around the body stays. The
+// eyes have one (u, v) only, and so no scales.
+Mesh snake_mesh(const SnakeShape& shape);
+
+// The centreline from tail to snout with the half-width of the body, body_radius = 1: what clearances are
+// told from.
+struct SnakePoint {
+  Vec3 position;
+  double arc = 0;  // length from the tip of the tail
+  double half_width = 0;
+};
+std::vector<SnakePoint> snake_centerline(const SnakeShape& shape, int points);
+
+}  // namespace sunbeam

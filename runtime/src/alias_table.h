@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,7 +25,6 @@ class AliasTable {
       left.push_back(total > 0 ? weights[k] / total * kBins : 1);
       (left[k] < 1 ? small : large).push_back(k);
     }
-    std::array<double, kBins> drawn{};  // what the rounded thresholds amount to
     while (!small.empty() && !large.empty()) {
       const std::size_t s = small.back(), l = large.back();
       small.pop_back();
@@ -36,33 +36,40 @@ class AliasTable {
     }
     for (const auto& rest : {small, large})
       for (const std::size_t k : rest) set(k, 1, k);
-    for (std::size_t k = 0; k < kBins; ++k) {
-      drawn[k] += threshold_[k];
-      drawn[alias_[k]] += 1 - double{threshold_[k]};
-    }
-    for (std::size_t k = 0; k < kBins; ++k) density_[k] = static_cast<float>(drawn[k]);
   }
 
-  // Relative to an even one.
-  float density(std::size_t bin) const { return density_[bin]; }
+  // Relative to an even one; what the rounded thresholds amount to.
+  std::array<double, kBins> densities() const {
+    std::array<double, kBins> drawn{};
+    for (std::size_t k = 0; k < kBins; ++k) {
+      const double stays = bins_[k].threshold / kWhole;
+      drawn[k] += stays;
+      drawn[bins_[k].alias] += 1 - stays;
+    }
+    return drawn;
+  }
 
+  // Bits in place of a choice, which a processor would guess wrong.
   std::size_t draw(std::uint32_t random) const {
     const std::uint64_t scaled = std::uint64_t{random} * kBins;
-    const std::size_t bin = scaled >> 32;
-    return static_cast<float>(static_cast<std::uint32_t>(scaled) >> 8) * 0x1p-24f < threshold_[bin]
-               ? bin
-               : alias_[bin];
+    const auto bin = static_cast<std::uint32_t>(scaled >> 32);
+    const auto [threshold, alias] = bins_[bin];
+    const std::uint32_t stays = (static_cast<std::uint32_t>(scaled) >> 8) < threshold;
+    return alias ^ ((alias ^ bin) & (0 - stays));
   }
 
  private:
   void set(std::size_t bin, double threshold, std::size_t alias) {
-    threshold_[bin] = static_cast<float>(threshold);
-    alias_[bin] = static_cast<std::uint16_t>(alias);
+    bins_[bin] = {static_cast<std::uint32_t>(std::lround(threshold * kWhole)),
+                  static_cast<std::uint32_t>(alias)};
   }
 
-  std::array<float, kBins> density_;
-  std::array<float, kBins> threshold_{};
-  std::array<std::uint16_t, kBins> alias_{};
+  static constexpr double kWhole = 1 << 24;
+  struct Bin {
+    std::uint32_t threshold = 0;  // chance that the bin stands for itself, of kWhole,
+    std::uint32_t alias = 0;      // else for this one
+  };
+  std::array<Bin, kBins> bins_;
 };
 
 }  // namespace sunbeam

@@ -256,11 +256,8 @@ inline Vec3 BoundTable::draw_first(const Viewer& viewer, int row, const Vec3& wo
 }
 
 inline Vec3 BoundTable::draw_rest(int row, Rng& rng) const {
-  const double root{rest_sampler_.sample(row, rng)}, cosine = root * root;
-  const FloatTurn phi(uniform_float(rng));
-  const double x{phi.cosine}, y{phi.sine};
-  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine) / (x * x + y * y));
-  return {sine * x, sine * y, cosine};
+  const double root{rest_sampler_.sample(row, rng)};
+  return at_random_azimuth(root * root, rng);
 }
 
 // One number chooses the technique and, with what is left of it, the row.

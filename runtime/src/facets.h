@@ -17,6 +17,14 @@ namespace sunbeam {
 // In [0, 1), 24 random bits.
 inline float uniform_float(Rng& rng) { return static_cast<float>(rng.next() >> 8) * 0x1p-24f; }
 
+// A unit vector.
+inline Vec3 at_random_azimuth(double cosine, Rng& rng) {
+  const FloatTurn phi(uniform_float(rng));
+  const double x{phi.cosine}, y{phi.sine};
+  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine) / (x * x + y * y));
+  return {sine * x, sine * y, cosine};
+}
+
 // What does not depend on directions. All 0 for a smooth film.
 struct Facets {
   explicit Facets(const Roughness& roughness)

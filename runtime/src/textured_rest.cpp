@@ -45,17 +45,25 @@ double node_cosine(int c) {
 
 }  // namespace
 
-TexturedFrame::TexturedFrame(const Material& material, double base_ior, double depth)
-    : optical_depth(static_cast<float>(depth)) {
+TexturedMaterial::TexturedMaterial(const Material& material)
+    : bends(material.transmission == Transmission::refract),
+      exterior_ior(material.exterior_ior),
+      pigment_thickness_nm(material.pigment_thickness_nm) {
   const double blur2 = square(0.3 * material.roughness.u);
   film_scale = static_cast<float>(1 / (1 + blur2));
   film_offset = static_cast<float>(blur2 / (1 + blur2));
-  const bool bends = material.transmission == Transmission::refract;
-  const double ratio2 = bends ? square(material.exterior_ior / base_ior) : 1;
-  below_scale = static_cast<float>(ratio2);
-  below_offset = static_cast<float>(1 - ratio2);
   least_below = static_cast<float>(
       square(material.is_smooth() ? kLeastSmoothFrame : std::max(std::sqrt(blur2), kLeastFrame)));
+}
+
+TexturedFrame::TexturedFrame(const TexturedMaterial& material, double base_ior, double depth)
+    : film_scale(material.film_scale),
+      film_offset(material.film_offset),
+      least_below(material.least_below),
+      optical_depth(static_cast<float>(depth)) {
+  const double ratio2 = material.bends ? square(material.exterior_ior / base_ior) : 1;
+  below_scale = static_cast<float>(ratio2);
+  below_offset = static_cast<float>(1 - ratio2);
 }
 
 // Goes through the nodes; what depends on few of the parameters is found once.
@@ -129,7 +137,7 @@ class TexturedRest::Builder {
 
   // What the pigment leaves of each wavelength, relative to the one that it absorbs least; and frames.
   void find_pigment() {
-    const TexturedFrame frame(table_.material, base_ior_, depth_);
+    const TexturedFrame frame(TexturedMaterial(table_.material), base_ior_, depth_);
     pigment_.assign(waves_.size() * kCosines, 1);
     for (int c = 0; c < kCosines; ++c) {
       const auto cosine = static_cast<float>(cosines_[c]);
@@ -291,6 +299,9 @@ TexturedPlace TexturedRest::place(const Parameters& at) const {
                      s = axes_[2].locate(at.absorption_per_nm);
   TexturedPlace place;
   place.row = static_cast<std::size_t>(d.lower * corner_[4] + n.lower * corner_[2] + s.lower * corner_[1]);
+  const auto nearest = [](const EvenPosition& at, int step) { return at.upper_weight < 0.5f ? 0 : step; };
+  place.nearest = place.row + static_cast<std::size_t>(nearest(d, corner_[4]) + nearest(n, corner_[2]) +
+                                                       nearest(s, corner_[1]));
   for (int k = 0; k < 8; ++k)
     place.weight[k] = (k & 4 ? d.upper_weight : 1 - d.upper_weight) *
                       (k & 2 ? n.upper_weight : 1 - n.upper_weight) *

@@ -20,7 +20,7 @@ class TexturedRest {
 
   TexturedPlace place(const Parameters& at) const;
 
-  // L at the root of a cosine; the last lane is the chance of sampling the first surface.
+  // L at the root of a cosine; the last lane is the chance of sampling the first surface, interpolated too.
   Color4 at(const TexturedPlace& place, float root) const {
     const EvenPosition c(root, kCosines);
     Color4 low{}, high{};
@@ -30,6 +30,14 @@ class TexturedRest {
       high += place.weight[k] * row[1];
     }
     return low + c.upper_weight * (high - low);
+  }
+
+  // The chance of sampling the first surface, from the nearest parameters: they are given, and so the choice
+  // need not change smoothly with them.
+  float first_chance(const TexturedPlace& place, float root) const {
+    const EvenPosition c(root, kCosines);
+    const Color4* row = nodes_.data() + place.nearest + c.lower;
+    return row[0][3] + c.upper_weight * (row[1][3] - row[0][3]);
   }
 
   // Asks for what at() will read, to work meanwhile.

@@ -39,7 +39,7 @@ namespace sunbeam {
 
 struct FloatRgb;
 struct TexturedData;
-struct TexturedEnd;
+struct TexturedViewer;
 
 // Copies share the data. Const calls, those of At included, allocate nothing and lock nothing, and may run on
 // any number of threads.
@@ -69,7 +69,7 @@ class TexturedTable {
     friend class TexturedTable;
     At(const TexturedData& data, const Parameters& parameters);
     void fold(std::span<const float> cosines, FloatRgb* reflectance) const;
-    EvalPdf eval_pdf(const Vec3& wo, const TexturedEnd& o, const Vec3& wi) const;
+    EvalPdf eval_pdf(const TexturedViewer& viewer, const Vec3& wo, const Vec3& wi) const;
 
     const TexturedData* data_;
     Parameters parameters_;

@@ -29,17 +29,20 @@ float rest_exponent(const TexturedFrame& frame, float absorption) {
 
 }  // namespace
 
-// What the frame of L says of a direction.
+// Where a direction lies among the nodes of L, and what its frame says of it.
 struct TexturedEnd {
-  TexturedEnd(const TexturedFrame& frame, float cosine, float root_of_cosine) : root(root_of_cosine) {
-    const Color4 roots =
-        sqrt4(Color4{frame.film_cosine_squared(cosine), frame.pigment_cosine_squared(cosine), 1, 1});
-    film_cosine = std::min(roots[0], 1.0f);
-    path = 1 / roots[1];
-  }
-  float root;         // of the cosine
-  float film_cosine;  // c~
-  float path;         // 1 / m~
+  TexturedEnd(const TexturedRest& rest, const TexturedMaterial& material, const TexturedPlace& place,
+              const TexturedFrame& frame, float cosine, float root)
+      : roots(sqrt4(Color4{material.path_squared(cosine), frame.pigment_cosine_squared(cosine),
+                           material.film_cosine_squared(cosine), 1})),
+        at(rest.direction(place, roots[0], root)),
+        per_pigment_cosine(1 / roots[1]),
+        passing(TexturedMaterial::passing(roots[2])) {}
+
+  Color4 roots;
+  TexturedRest::Direction at;
+  float per_pigment_cosine;  // 1 / m~
+  float passing;             // of a rough film
 };
 
 struct TexturedData {
@@ -50,11 +53,11 @@ struct TexturedData {
         facets(table.material.roughness),
         smooth(table.material.is_smooth()) {}
 
-  // B from L.
-  Color4 rest_factor(const TexturedPlace& place, const TexturedFrame& at, const TexturedEnd& end,
-                     const FloatRgb& reflectance) const {
-    return rest.passing(reflectance) *
-           exp4(rest.at(place, end.root) - (at.optical_depth * end.path) * rest.absorption());
+  // B B over T T; one exponential serves both.
+  Color4 rest_factor(const TexturedPlace& place, const TexturedFrame& at, const TexturedEnd& o,
+                     const TexturedEnd& i) const {
+    const float paths = o.per_pigment_cosine + i.per_pigment_cosine;
+    return exp4(rest.at(place, o.at) + rest.at(place, i.at) - (at.optical_depth * paths) * rest.absorption());
   }
 
   Material material;
@@ -68,9 +71,9 @@ struct TexturedData {
 struct TexturedViewer {
   TexturedViewer(const TexturedData& data, const TexturedPlace& place, const TexturedFrame& frame,
                  const Vec3& wo)
-      : facets(data.facets, wo), end(frame, facets.cosine, facets.root) {
-    data.rest.prefetch(place, end.root);
-    first_chance = data.rest.first_chance(place, end.root);
+      : facets(data.facets, wo), end(data.rest, data.frame, place, frame, facets.cosine, facets.root) {
+    data.rest.prefetch(place, end.at);
+    first_chance = data.rest.first_chance(place, end.at);
   }
   FacetViewer facets;
   TexturedEnd end;
@@ -122,28 +125,34 @@ Rgb TexturedTable::At::dirac(const Vec3& wo) const {
 double TexturedTable::At::albedo(const Vec3& wo) const {
   if (wo.z <= 0) return 0;
   const TexturedViewer viewer(*data_, place_, frame_, wo);
+  const float cosine = std::sqrt(data_->frame.film_cosine_squared(viewer.facets.cosine));
   FloatRgb r;
-  fold({&viewer.end.film_cosine, 1}, &r);
-  return double{r.r + r.g + r.b} / 3 / double{data_->rest.at(place_, viewer.end.root)[3]};
+  fold({&cosine, 1}, &r);
+  return double{r.r + r.g + r.b} / 3 / double{data_->rest.at(place_, viewer.end.at)[3]};
 }
 
 inline EvalPdf TexturedTable::At::eval_pdf(const TexturedViewer& viewer, const Vec3& wo,
                                            const Vec3& wi) const {
   const TexturedData& data = *data_;
   const FacetPair pair(data.facets, viewer.facets, wo, wi);
-  const TexturedEnd& o = viewer.end;
-  const TexturedEnd i(frame_, pair.cosine, pair.root);
-  data.rest.prefetch(place_, i.root);
-  const float cosines[] = {o.film_cosine, i.film_cosine, std::min(pair.half_cosine, 1.0f)};
-  FloatRgb film[3];
-  fold({cosines, data.smooth ? 2u : 3u}, film);
+  const TexturedEnd i(data.rest, data.frame, place_, frame_, pair.cosine, pair.root);
+  data.rest.prefetch(place_, i.at);
+  FloatRgb film[2];
+  if (data.smooth) {
+    const float cosines[] = {viewer.facets.cosine, pair.cosine};
+    fold(cosines, film);
+  } else {
+    const float half_cosine = std::min(pair.half_cosine, 1.0f);
+    fold({&half_cosine, 1}, film);
+  }
 
-  const Color4 rest =
-      data.rest_factor(place_, frame_, o, film[0]) * data.rest_factor(place_, frame_, i, film[1]);
+  const Color4 rest = data.rest_factor(place_, frame_, viewer.end, i);
   const float chance = viewer.first_chance, rest_pdf = (1 - chance) * rest_density_.pdf(pair.cosine);
-  if (data.smooth) return {to_rgb(rest), double{rest_pdf}};
-  const Color4 reflectance{film[2].r, film[2].g, film[2].b, 0};
-  return {to_rgb(rest + pair.lobe * reflectance), double{rest_pdf + chance * pair.pdf}};
+  if (data.smooth)
+    return {to_rgb(data.rest.passing(film[0]) * data.rest.passing(film[1]) * rest), double{rest_pdf}};
+  const float passing = viewer.end.passing * i.passing;
+  const Color4 reflectance{film[0].r, film[0].g, film[0].b, 0};
+  return {to_rgb(passing * rest + pair.lobe * reflectance), double{rest_pdf + chance * pair.pdf}};
 }
 
 EvalPdf TexturedTable::At::eval_pdf(const Vec3& wo, const Vec3& wi) const {

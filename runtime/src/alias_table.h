@@ -2,6 +2,7 @@
 // 1991.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -12,7 +13,7 @@ namespace sunbeam {
 
 template <int kBins>
 class AliasTable {
-  static_assert(kBins <= 65536 && (kBins & (kBins - 1)) == 0, "bins are drawn by the highest bits");
+  static_assert(kBins <= 4096 && (kBins & (kBins - 1)) == 0, "bins are drawn by the highest bits");
 
  public:
   // In proportion to `weights`, >= 0; even if they are all 0.
@@ -41,35 +42,34 @@ class AliasTable {
   // Relative to an even one; what the rounded thresholds amount to.
   std::array<double, kBins> densities() const {
     std::array<double, kBins> drawn{};
-    for (std::size_t k = 0; k < kBins; ++k) {
-      const double stays = bins_[k].threshold / kWhole;
+    for (std::uint32_t k = 0; k < kBins; ++k) {
+      const double stays = threshold(bins_[k]) / double{kWhole};
       drawn[k] += stays;
-      drawn[bins_[k].alias] += 1 - stays;
+      drawn[alias(bins_[k])] += 1 - stays;
     }
     return drawn;
   }
 
   // Bits in place of a choice, which a processor would guess wrong.
   std::size_t draw(std::uint32_t random) const {
-    const std::uint64_t scaled = std::uint64_t{random} * kBins;
-    const auto bin = static_cast<std::uint32_t>(scaled >> 32);
-    const auto [threshold, alias] = bins_[bin];
-    const std::uint32_t stays = (static_cast<std::uint32_t>(scaled) >> 8) < threshold;
-    return alias ^ ((alias ^ bin) & (0 - stays));
+    const std::uint32_t bin = random / kWhole, packed = bins_[bin];
+    const std::uint32_t stays = random % kWhole < threshold(packed), other = alias(packed);
+    return other ^ ((other ^ bin) & (0 - stays));
   }
 
  private:
+  // The chance that a bin stands for itself, of kWhole, is in the high bits, and the bin for which it stands
+  // otherwise in the low ones. One that always stands for itself is its own alias.
+  static constexpr std::uint32_t kWhole = (1ull << 32) / kBins;
+  static std::uint32_t threshold(std::uint32_t packed) { return packed / kBins; }
+  static std::uint32_t alias(std::uint32_t packed) { return packed % kBins; }
+
   void set(std::size_t bin, double threshold, std::size_t alias) {
-    bins_[bin] = {static_cast<std::uint32_t>(std::lround(threshold * kWhole)),
-                  static_cast<std::uint32_t>(alias)};
+    const long rounded = std::min(std::lround(threshold * kWhole), long{kWhole} - 1);
+    bins_[bin] = static_cast<std::uint32_t>(rounded * kBins) + static_cast<std::uint32_t>(alias);
   }
 
-  static constexpr double kWhole = 1 << 24;
-  struct Bin {
-    std::uint32_t threshold = 0;  // chance that the bin stands for itself, of kWhole,
-    std::uint32_t alias = 0;      // else for this one
-  };
-  std::array<Bin, kBins> bins_;
+  std::array<std::uint32_t, kBins> bins_{};  // a cache line holds sixteen
 };
 
 }  // namespace sunbeam

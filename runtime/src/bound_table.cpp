@@ -132,28 +132,41 @@ Rgb BoundTable::rest_albedo(const Vec3& wo) const {
   return total;
 }
 
-// Adds the viewer's row and returns the albedo, both by midpoints in the cells: there f_first cos / density
-// is R G2 / G1 times the bounded cap's share of the whole.
+// First and second moment over a cell, by midpoints, of f_first cos / density: R G2 / G1 times the bounded
+// cap's share of the whole.
+BoundTable::Moments BoundTable::first_moments(const Vec3& wo, std::size_t cell, int nodes) const {
+  Moments sum;
+  for (int k = 0; k < nodes * nodes; ++k) {
+    const double turn = static_cast<double>(cell / FirstSampler::kHeights) + (k % nodes + 0.5) / nodes;
+    const double height = static_cast<double>(cell % FirstSampler::kHeights) + (k / nodes + 0.5) / nodes;
+    const Vec3 wi =
+        normals_.sample_mirrored(wo, {turn / (2 * FirstSampler::kTurns), height / FirstSampler::kHeights});
+    sum.least_cosine = std::min(sum.least_cosine, wi.z);
+    if (wi.z <= 0) continue;
+    const Vec3 h = normalize(wo + wi);
+    const double weight = normals_.reflection(wo, wi, h) * wi.z / normals_.reflection_pdf_bounded(wo, h);
+    const double power = std::max(0.0, mean(film_reflectance(dot(wo, h)))) * weight / (nodes * nodes);
+    sum.first += power;
+    sum.second += power * power * (nodes * nodes);
+  }
+  return sum;
+}
+
+// Adds the viewer's row and returns the albedo. Cells are drawn by the root of their second moment, which
+// makes the variance least; near the horizon, where light rises steeply and ends, it takes more nodes.
 double BoundTable::add_first_row(const Vec3& wo) {
-  constexpr int kTurnNodes = 1, kHeightNodes = 2;
+  constexpr int kNodes = 1, kHorizonNodes = 4;
+  constexpr double kHorizon = 0.1;
   constexpr double kLeastShare =
-      0.02;  // of the mean: neighbouring viewers may have light where this has none
+      0.005;  // of the mean: neighbouring viewers may have light where this has none
   std::vector<double> power(FirstSampler::kCells);
   double albedo = 0;
-  for (std::size_t cell = 0; cell < power.size(); ++cell)
-    for (int k = 0; k < kTurnNodes * kHeightNodes; ++k) {
-      const double turn =
-          static_cast<double>(cell / FirstSampler::kHeights) + (k % kTurnNodes + 0.5) / kTurnNodes;
-      const double height =
-          static_cast<double>(cell % FirstSampler::kHeights) + (k / kTurnNodes + 0.5) / kHeightNodes;
-      const Vec3 wi =
-          normals_.sample_mirrored(wo, {turn / (2 * FirstSampler::kTurns), height / FirstSampler::kHeights});
-      if (wi.z <= 0) continue;
-      const Vec3 h = normalize(wo + wi);
-      const double weight = normals_.reflection(wo, wi, h) * wi.z / normals_.reflection_pdf_bounded(wo, h);
-      power[cell] += std::max(0.0, mean(film_reflectance(dot(wo, h)))) * weight / (kTurnNodes * kHeightNodes);
-    }
-  for (const double p : power) albedo += p / FirstSampler::kCells;
+  for (std::size_t cell = 0; cell < power.size(); ++cell) {
+    Moments moments = first_moments(wo, cell, kNodes);
+    if (moments.least_cosine < kHorizon) moments = first_moments(wo, cell, kHorizonNodes);
+    power[cell] = std::sqrt(moments.second);
+    albedo += moments.first / FirstSampler::kCells;
+  }
   for (double& p : power) p = std::max(p, kLeastShare * albedo);
   first_sampler_.add_row(power);
   return albedo;

@@ -59,6 +59,11 @@ class BoundTable {
   void take_rest(const Table& table);
   void prepare_sampling();
   void prepare_pairs();
+  struct Moments {
+    double first = 0, second = 0;
+    double least_cosine = 1;  // of what is drawn
+  };
+  Moments first_moments(const Vec3& wo, std::size_t cell, int nodes) const;
   double add_first_row(const Vec3& wo);
   Rgb first_albedo(const Vec3& wo, int nodes) const;
   Rgb rest_albedo(const Vec3& wo) const;

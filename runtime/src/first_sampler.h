@@ -18,7 +18,7 @@ namespace sunbeam {
 class FirstSampler {
  public:
   static constexpr int kRows = 33;
-  static constexpr int kTurns = 16, kHeights = 32, kCells = kTurns * kHeights;
+  static constexpr int kTurns = 16, kHeights = 64, kCells = kTurns * kHeights;
 
   FirstSampler() : density_(kCells * kStride) {}
 

@@ -51,7 +51,7 @@ class Broken final : public Bsdf {
   Rgb eval(const Vec3&, const Vec3&, Rng&) const override { return {}; }
   std::optional<BsdfSample> sample(const Vec3&, Rng&) const override {
     if (throws_) throw std::domain_error("broken BSDF");
-    return BsdfSample{{0, 0, 1}, Rgb(std::numeric_limits<double>::quiet_NaN()), false};
+    return BsdfSample{{0, 0, 1}, Rgb(std::numeric_limits<double>::quiet_NaN()), false, 0};
   }
   double pdf(const Vec3&, const Vec3&, Rng&) const override { return 0; }
   double mis_pdf(const Vec3&, const Vec3&) const override { return 0; }
@@ -274,7 +274,7 @@ TEST(Render, BadSettingsAreRefused) {
             "render settings: threads: found -2; allowed: 0 to 4096");
   EXPECT_EQ(error_of([&] { render(scene, {}, {}); }),
             "render: found 0 BSDFs; allowed: one for each of 1 materials");
-  EXPECT_EQ(error_of([&] { render(scene, std::vector<const Bsdf*>{nullptr}, {}); }),
+  EXPECT_EQ(error_of([&] { render(scene, std::vector<SurfaceBsdf>{static_cast<const Bsdf*>(nullptr)}, {}); }),
             "render: material \"grey\" has no BSDF");
 }
 

@@ -216,6 +216,8 @@ Recipe parse_recipe(const std::string& text, const std::string& name,
   if (recipe.table.frame == FrameKind::none && recipe.table.encoding != Encoding::dense)
     table.fail("frame", "found \"none\"; allowed with encoding \"dense\" only");
 
+  recipe.table.values = static_cast<TableValues>(table.choice("values", {"auto", "walks"}, 0));
+
   const ConfigTable accuracy = config.table("accuracy");
   recipe.accuracy.noise = accuracy.number("noise", {1e-4, 1}, recipe.accuracy.noise);
   recipe.accuracy.tolerance_median =

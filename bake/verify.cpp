@@ -5,6 +5,7 @@
 #include "bake/cell.h"
 #include "bake/live/exact.h"
 #include "bake/live/pfmc.h"
+#include "bake/live/slab_solver.h"
 #include "bake/parallel_tasks.h"
 #include "sunbeam/table_bsdf.h"
 
@@ -108,9 +109,23 @@ class PointCheck {
   }
 
   std::vector<Rgb> exact_rest() const {
+    if (bsdf_->material().scatters()) return solved_rest();
     const ExactRest exact(bsdf_->material(), wavelengths_);
     std::vector<Rgb> live;
     for (const Vec3& wo : directions_.wo) live.push_back(exact.rest(wo, wi_));
+    return live;
+  }
+
+  std::vector<Rgb> solved_rest() const {
+    std::vector<double> cosines{wi_.z};
+    for (const Vec3& wo : directions_.wo) cosines.push_back(wo.z);
+    SlabSolver solver(bsdf_->material(), cosines);
+    const double depth = bsdf_->material().optical_depth();
+    for (const double relative : wavelengths_.absorption) solver.add_depth(depth * relative);
+    const auto rest = SlabSolver::Film(solver, point_.parameters.film_thickness_nm, wavelengths_).rest(depth);
+    std::vector<Rgb> live;
+    for (std::size_t k = 0; k < directions_.wo.size(); ++k)
+      live.push_back(rest.at(k + 1, 0, azimuth(directions_.wo[k]) - point_.phi_i));
     return live;
   }
 
@@ -179,13 +194,14 @@ double quantile(std::vector<double> values, double q) {
 
 Estimator default_truth(const Recipe& recipe) {
   constexpr double kFinestByWalks = 0.005;  // finer, PFMC would take hours to show
-  if (recipe.material.is_plain() && recipe.accuracy.tolerance_median < kFinestByWalks)
+  if ((recipe.material.is_plain() || SlabSolver::solves(recipe.material)) &&
+      recipe.accuracy.tolerance_median < kFinestByWalks)
     return Estimator::exact;
   return recipe.material.scatters() ? recipe.accuracy.estimator : Estimator::pfmc;
 }
 
 VerifyReport verify(const Table& table, const VerifySettings& settings) {
-  estimator_for_eval(settings.truth, table.material);  // throws if it has none
+  estimator_for_truth(settings.truth, table.material);  // throws if it has none
   const Spectrum spectrum = parse_recipe(table.info.at("recipe"), "recipe of the table").spectrum;
   VerifyReport report;
   report.truth = name_of(settings.truth);

@@ -58,12 +58,12 @@ Material read_material(const ConfigTable& config) {
 }
 
 // The axes without nodes. Their coordinates follow how the rest depends on a parameter: like the square root
-// of the base IOR's distance from index match, and ever more slowly with absorption; evenly with that of a
+// of the base IOR's distance from index match, and ever more slowly with absorption; less so with that of a
 // scattering pigment, whose remainder holds the decay itself.
 std::array<Axis, 3> bare_axes(const Material& material) {
   Axis thickness{kParameterNames[0], "nm", {}};
   Axis base_ior{kParameterNames[1], "1", {}, 2, 0, material.exterior_ior};
-  Axis absorption{kParameterNames[2], "1/nm", {}, material.scatters() ? 1.0 : 3.0};
+  Axis absorption{kParameterNames[2], "1/nm", {}, material.scatters() ? 2.0 : 3.0};
   return {thickness, base_ior, absorption};
 }
 

@@ -14,9 +14,10 @@ namespace {
 
 constexpr std::size_t kDirections = 64;  // wo a point
 constexpr int kMostAttempts = 4096;      // to draw them
-constexpr int kFirstEstimates = 16;      // a live run; doubled until the expected floor is low enough
+constexpr int kPilotEstimates = 128;     // tell how many a live run needs
 constexpr int kBatches = 16;
-constexpr int kMostEstimates = 1 << 13;
+constexpr double kMostEstimates = 1 << 14;  // of a live run at a median tolerance of 1 %
+constexpr double kFloorMargin = 0.85;       // of the floor promised is aimed at
 
 double draw(const Axis& axis, Rng& rng) { return lerp(rng.uniform(), axis.low(), axis.high()); }
 
@@ -90,22 +91,27 @@ class PointCheck {
   }
 
  private:
-  // The number of walks follows the expected floor, not the floor itself: stopping at runs that happen to
-  // agree would report one that is too low.
+  // The number of walks follows the floor that a pilot expects, not that of the runs themselves: stopping at
+  // runs that happen to agree would report one that is too low.
   std::vector<Rgb> walked_rest() {
-    for (int estimates = kFirstEstimates;; estimates *= 2) {
-      const WalkedRest live =
-          walk_rest(*model_, technique_of(settings_.truth), wi_, directions_.wo, estimates, rng_);
-      const double scale = denominator(live.value);
-      if (weighted(live.expected_difference) / scale > settings_.tolerance_median / 3 &&
-          estimates < kMostEstimates)
-        continue;
-      auto difference =
-          walk_rest(*model_, technique_of(settings_.truth), wi_, directions_.wo, estimates, rng_).value;
-      for (std::size_t k = 0; k < difference.size(); ++k) difference[k] = live.value[k] - difference[k];
-      point_.noise_floor = weighted(difference) / scale;
-      return live.value;
-    }
+    const int estimates = estimates_needed();
+    const auto walk = [&](int count) {
+      return walk_rest(*model_, technique_of(settings_.truth), wi_, directions_.wo, count, rng_);
+    };
+    const std::vector<Rgb> live = walk(estimates).value;
+    auto difference = walk(estimates).value;
+    for (std::size_t k = 0; k < difference.size(); ++k) difference[k] = live[k] - difference[k];
+    point_.noise_floor = weighted(difference) / denominator(live);
+    return live;
+  }
+
+  int estimates_needed() {
+    const WalkedRest pilot =
+        walk_rest(*model_, technique_of(settings_.truth), wi_, directions_.wo, kPilotEstimates, rng_);
+    const double floor = weighted(pilot.expected_difference) / denominator(pilot.value);
+    const double needed = kPilotEstimates * square(floor / (kFloorMargin * settings_.tolerance_median / 3));
+    const double most = kMostEstimates * square(0.01 / settings_.tolerance_median);
+    return kBatches * static_cast<int>(std::ceil(std::clamp(needed, 1.0, most) / kBatches));
   }
 
   std::vector<Rgb> exact_rest() const {

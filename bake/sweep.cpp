@@ -188,6 +188,10 @@ class Orbits {
   std::vector<Cells> orbits_;
 };
 
+bool is_solved(const Recipe& recipe) {
+  return recipe.table.values == TableValues::automatic && SlabSolver::solves(recipe.material);
+}
+
 std::map<std::string, std::string> info_of(const Recipe& recipe, Encoding encoding, std::uint64_t seed,
                                            std::uint64_t walks, const char* estimator) {
   std::map<std::string, std::string> info{{"recipe", recipe.text},        {"recipe_hash", recipe.hash},
@@ -217,16 +221,13 @@ class Sweep {
   }
 
   Table run() {
-    const bool solves =
-        recipe_.table.values == TableValues::automatic && SlabSolver::solves(recipe_.material);
-    if (solves) {
+    if (is_solved(recipe_)) {
       for (std::size_t ior = 0; ior < recipe_.grid[1].size(); ++ior) solve_nodes(ior);
     } else {
       run_parallel_tasks(nodes_, settings_.threads, settings_.on_progress,
                          [&](std::size_t node) { bake_node(node); });
     }
-    table_.info = info_of(recipe_, Encoding::dense, settings_.seed, walks_,
-                          solves ? "adding-doubling" : name_of(recipe_.accuracy.estimator));
+    table_.info = info_of(recipe_, Encoding::dense, settings_.seed, walks_, dense_method(recipe_));
     return std::move(table_);
   }
 
@@ -365,6 +366,10 @@ std::vector<Encoding> encodings_of(const Recipe& recipe) {
   if (bytes_of(recipe, Encoding::factored) < bytes_of(recipe, Encoding::dense))
     return {Encoding::factored, Encoding::dense};
   return {Encoding::dense, Encoding::factored};
+}
+
+const char* dense_method(const Recipe& recipe) {
+  return is_solved(recipe) ? "adding-doubling" : name_of(recipe.accuracy.estimator);
 }
 
 void require_reasonable_size(const Recipe& recipe, Encoding encoding) {

@@ -11,7 +11,7 @@
 namespace sunbeam {
 namespace {
 
-constexpr double kThinLayer = 1e-5;  // optical thickness, so thin that second scattering is left out
+constexpr double kThinLayer = 1e-7;  // optical thickness, so thin that even grazing light scatters once
 
 // Terms until a share g^l is below `least`.
 int terms_until(double least, double g) {

@@ -36,7 +36,7 @@ class SlabSolver {
   struct Resolution {
     int below = 12, above = 20;  // cosines up to the critical one of the film seen from below, and from there
     int across = 24, around = 24;  // facets of one direction: over the cap, and over half a turn
-    double least = 1e-4;           // share of the phase function that may be left out
+    double least = 3e-5;           // share of the phase function that may be left out
   };
 
   // Largest |mean cosine| of a scattering event.

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t kDirections = 64;  // wo a point
 constexpr int kMostAttempts = 4096;      // to draw them
-constexpr int kPilotEstimates = 128;     // tell how many a live run needs
+constexpr int kFirstPilot = 16;  // estimates that tell how many a live run needs; doubled until it can
+constexpr int kPilotReach = 8;   // times as many
 constexpr int kBatches = 16;
 constexpr double kMostEstimates = 1 << 14;  // of a live run at a median tolerance of 1 %
 constexpr double kFloorMargin = 0.85;       // of the floor promised is aimed at
@@ -106,12 +107,16 @@ class PointCheck {
   }
 
   int estimates_needed() {
-    const WalkedRest pilot =
-        walk_rest(*model_, technique_of(settings_.truth), wi_, directions_.wo, kPilotEstimates, rng_);
-    const double floor = weighted(pilot.expected_difference) / denominator(pilot.value);
-    const double needed = kPilotEstimates * square(floor / (kFloorMargin * settings_.tolerance_median / 3));
     const double most = kMostEstimates * square(0.01 / settings_.tolerance_median);
-    return kBatches * static_cast<int>(std::ceil(std::clamp(needed, 1.0, most) / kBatches));
+    for (int pilot = kFirstPilot;; pilot *= 2) {
+      const WalkedRest rest =
+          walk_rest(*model_, technique_of(settings_.truth), wi_, directions_.wo, pilot, rng_);
+      const double floor = weighted(rest.expected_difference) / denominator(rest.value);
+      const double needed = pilot * square(floor / (kFloorMargin * settings_.tolerance_median / 3));
+      const double reach = std::min<double>(kPilotReach * pilot, most);
+      if (needed <= reach || reach == most)
+        return kBatches * static_cast<int>(std::ceil(std::clamp(needed, 1.0, most) / kBatches));
+    }
   }
 
   std::vector<Rgb> exact_rest() const {

@@ -171,12 +171,20 @@ void read_albedo(const ConfigTable& config, Spectrum& spectrum, Material& materi
   }
 }
 
+// Enough for the material's rest: a factored one is smooth in azimuth, but must be right to 0.1 %; a dense one
+// pays for each.
+int default_azimuths(const Material& material) {
+  if (material.is_plain()) return 1;
+  if (material.roughness.is_isotropic()) return 9;
+  return material.scatters() || material.has_multiple_facets() ? 8 : 16;
+}
+
 // As many as the material's rest needs: see recipe.h.
 int read_azimuths(const ConfigTable& config, const Material& material) {
   constexpr const char* kAzimuths = "azimuths";
   constexpr int kMost = 512;
   const bool isotropic = material.roughness.is_isotropic();
-  const int azimuths = config.integer(kAzimuths, 1, kMost, material.is_plain() ? 1 : isotropic ? 9 : 8);
+  const int azimuths = config.integer(kAzimuths, 1, kMost, default_azimuths(material));
   if (!isotropic && azimuths % 4 != 0)
     config.fail(kAzimuths,
                 fmt::format("found {}; allowed with an anisotropic roughness: a multiple of 4 up to {}",

@@ -181,6 +181,7 @@ int run_render(const RenderOptions& options) {
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
   if (!options.table.empty()) scene.table = options.table;
   const SceneMaterials materials(scene, options.scene, options.material, estimator_of(options.estimator));
+  for (const std::string& warning : materials.warnings()) fmt::print(stderr, "warning: {}\n", warning);
   for (const auto& path : {options.output, png_beside(options.output)}) require_writable(path);
   if (!options.stats.empty()) require_writable(options.stats);
 

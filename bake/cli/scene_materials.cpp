@@ -8,12 +8,12 @@
 
 #include "bake/live/exact_bsdf.h"
 #include "bake/live/live_bsdf.h"
-#include "bake/recipe.h"
 #include "sunbeam/color_converted_bsdf.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/lambert.h"
 #include "sunbeam/table_bsdf.h"
 #include "sunbeam/table_vdb.h"
+#include "sunbeam/textured_table.h"
 
 namespace sunbeam {
 namespace {
@@ -27,31 +27,57 @@ Table load_scene_table(const Scene& scene, const std::string& scene_path) {
   return load_table(scene.table);
 }
 
-// A skin's own values over those of the recipe or table; where it has none it takes theirs.
-Material complete(SceneMaterial& skin, Material material) {
-  const auto settle = [](std::optional<double>& own, double& value) {
-    value = own.value_or(value);
-    own = value;
-  };
-  settle(skin.film_thickness_nm, material.film_thickness_nm);
-  settle(skin.base_ior, material.base_ior);
-  settle(skin.absorption_per_nm, material.absorption_per_nm);
-  return material;
+// A skin's own parameters over those of the recipe or table; where it has none it takes theirs.
+void complete(SceneMaterial& skin, const Material& material) {
+  const auto defaults = Parameters::of(material).values();
+  for (std::size_t k = 0; k < defaults.size(); ++k)
+    if (!skin.parameters[k]) skin.parameters[k] = ParameterField::of(defaults[k]);
 }
 
-std::unique_ptr<Bsdf> table_skin(const Table& table, SceneMaterial& skin, const std::string& scene_path) {
-  try {
-    return std::make_unique<TableBsdf>(table, Parameters::of(complete(skin, table.material)),
-                                       OutsideGrid::refuse);
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: material '{}': {}", scene_path, skin.name, error.what()));
+template <class B>
+std::unique_ptr<Bsdf> in_rec709(B bsdf, ColorSpace space) {
+  if (space == ColorSpace::rec709) return std::make_unique<B>(std::move(bsdf));
+  return std::make_unique<ColorConvertedBsdf<B>>(std::move(bsdf), space, ColorSpace::rec709);
+}
+
+class VaryingTableSkin final : public VaryingBsdf {
+ public:
+  explicit VaryingTableSkin(const Table& table)
+      : table_(table), matrix_(rgb_to_rgb(table.color_space(), ColorSpace::rec709)) {}
+  const Bsdf& at(const Parameters& parameters, BsdfRoom& room) const override {
+    return room.emplace<ColorConvertedBsdf<TexturedTable::At>>(table_.at(parameters), matrix_);
   }
+
+ private:
+  TexturedTable table_;
+  ColorMatrix matrix_;
+};
+
+std::unique_ptr<Bsdf> live_bsdf(const Material& material, const Spectrum& spectrum, Estimator estimator) {
+  const Wavelengths wavelengths = spectrum.wavelengths(material);
+  if (estimator == Estimator::exact)
+    return in_rec709(ExactBsdf(material, wavelengths), spectrum.color_space());
+  return in_rec709(LiveBsdf(material, wavelengths, technique_of(estimator)), spectrum.color_space());
 }
 
-std::unique_ptr<Bsdf> live_skin(const Material& material, const Spectrum& spectrum, Estimator estimator) {
-  const Wavelengths wavelengths = spectrum.wavelengths(material);
-  if (estimator == Estimator::exact) return std::make_unique<ExactBsdf>(material, wavelengths);
-  return std::make_unique<LiveBsdf>(material, wavelengths, technique_of(estimator));
+class VaryingLiveSkin final : public VaryingBsdf {
+ public:
+  VaryingLiveSkin(const Recipe& recipe, Estimator estimator)
+      : material_(recipe.material), spectrum_(recipe.spectrum), estimator_(estimator) {}
+  const Bsdf& at(const Parameters& parameters, BsdfRoom& room) const override {
+    return room.adopt(live_bsdf(parameters.applied_to(material_), spectrum_, estimator_));
+  }
+
+ private:
+  Material material_;
+  Spectrum spectrum_;
+  Estimator estimator_;
+};
+
+// The corner of a skin's parameters where film and base are optically thickest.
+Material highest(const SceneMaterial& skin, const Material& material) {
+  const auto high = [&](std::size_t k) { return skin.parameters[k]->bounds().second; };
+  return Parameters{high(0), high(1), high(2)}.applied_to(material);
 }
 
 }  // namespace
@@ -60,20 +86,27 @@ SceneMaterials::SceneMaterials(Scene& scene, const std::string& scene_path, cons
                                Estimator estimator) {
   std::optional<Table> table;
   std::optional<Recipe> recipe;
-  for (SceneMaterial& m : scene.materials) {
-    if (m.type == SceneMaterial::Type::diffuse) {
-      add(std::make_unique<Lambert>(m.albedo));
-    } else if (mode == "diffuse") {
+  for (SceneMaterial& skin : scene.materials) {
+    if (skin.type == SceneMaterial::Type::diffuse) {
+      add(std::make_unique<Lambert>(skin.albedo));
+      continue;
+    }
+    if (mode == "diffuse") {
       add(std::make_unique<Lambert>(scene.diffuse_albedo));
-    } else if (mode == "live") {
+      continue;
+    }
+    if (mode == "live") {
       if (scene.recipe.empty())
         throw Error(scene_path + ": key 'recipe' is missing; --material live needs it");
       if (!recipe) recipe = load_recipe(scene.recipe);
-      add_live(complete(m, recipe->material), recipe->spectrum, estimator,
-               scene_path + ": material '" + m.name + "': ");
-    } else {
-      if (!table) table = load_scene_table(scene, scene_path);
-      add_skin(table_skin(*table, m, scene_path), table->color_space());
+    } else if (!table) {
+      table = load_scene_table(scene, scene_path);
+    }
+    complete(skin, table ? table->material : recipe->material);
+    try {
+      table ? add_table_skin(skin, *table) : add_live_skin(skin, *recipe, estimator);
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: material '{}': {}", scene_path, skin.name, error.what()));
     }
   }
   if (table) table_hash_ = table->info.at("recipe_hash");
@@ -81,26 +114,39 @@ SceneMaterials::SceneMaterials(Scene& scene, const std::string& scene_path, cons
 
 std::string SceneMaterials::estimators() const { return fmt::format("{}", fmt::join(estimators_, ", ")); }
 
-void SceneMaterials::add_live(const Material& material, const Spectrum& spectrum, Estimator wanted,
-                              const std::string& where) {
-  try {
-    const Estimator estimator = estimator_for_render(wanted, material);
-    add_skin(live_skin(material, spectrum, estimator), spectrum.color_space());
-    estimators_.insert(name_of(estimator));
-  } catch (const Error& error) {
-    throw Error(where + error.what());
-  }
-}
-
 void SceneMaterials::add(std::unique_ptr<Bsdf> bsdf) {
-  pointers_.push_back(bsdf.get());
-  owned_.push_back(std::move(bsdf));
+  bsdfs_.push_back(bsdf.get());
+  uniform_.push_back(std::move(bsdf));
 }
 
-void SceneMaterials::add_skin(std::unique_ptr<Bsdf> bsdf, ColorSpace space) {
-  if (space != ColorSpace::rec709)
-    bsdf = std::make_unique<ColorConvertedBsdf>(std::move(bsdf), space, ColorSpace::rec709);
-  add(std::move(bsdf));
+void SceneMaterials::add(std::unique_ptr<VaryingBsdf> bsdf) {
+  bsdfs_.push_back(bsdf.get());
+  varying_.push_back(std::move(bsdf));
+}
+
+void SceneMaterials::add_table_skin(const SceneMaterial& skin, const Table& table) {
+  if (!skin.varies())
+    return add(in_rec709(TableBsdf(table, skin.parameters_at({}), OutsideGrid::refuse), table.color_space()));
+  for (std::size_t k = 0; k < kParameterNames.size(); ++k) {
+    const auto [low, high] = skin.parameters[k]->bounds();
+    const auto& nodes = table.parameter_axis(k).nodes;
+    if (low < nodes.front() || high > nodes.back())
+      warnings_.push_back(
+          fmt::format("material '{}': {} runs from {:g} to {:g}; clamped to the table's {:g} to {:g}",
+                      skin.name, kParameterNames[k], low, high, nodes.front(), nodes.back()));
+  }
+  add(std::make_unique<VaryingTableSkin>(table));
+}
+
+void SceneMaterials::add_live_skin(const SceneMaterial& skin, const Recipe& recipe, Estimator wanted) {
+  const Material material = highest(skin, recipe.material);
+  Estimator estimator = estimator_for_render(wanted, material);
+  // An exact evaluator is prepared for many look-ups, which those of one hit cannot repay.
+  if (skin.varies() && wanted == Estimator::automatic) estimator = Estimator::pfmc;
+  estimators_.insert(name_of(estimator));
+  if (!skin.varies()) return add(live_bsdf(material, recipe.spectrum, estimator));
+  recipe.spectrum.wavelengths(material);  // refuses films that it does not resolve
+  add(std::make_unique<VaryingLiveSkin>(recipe, estimator));
 }
 
 }  // namespace sunbeam

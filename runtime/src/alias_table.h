@@ -2,7 +2,9 @@
 // 1991.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,7 +13,7 @@ namespace sunbeam {
 
 template <int kBins>
 class AliasTable {
-  static_assert(kBins <= 65536 && (kBins & (kBins - 1)) == 0, "bins are drawn by the highest bits");
+  static_assert(kBins <= 4096 && (kBins & (kBins - 1)) == 0, "bins are drawn by the highest bits");
 
  public:
   // In proportion to `weights`, >= 0; even if they are all 0.
@@ -24,7 +26,6 @@ class AliasTable {
       left.push_back(total > 0 ? weights[k] / total * kBins : 1);
       (left[k] < 1 ? small : large).push_back(k);
     }
-    std::array<double, kBins> drawn{};  // what the rounded thresholds amount to
     while (!small.empty() && !large.empty()) {
       const std::size_t s = small.back(), l = large.back();
       small.pop_back();
@@ -36,33 +37,39 @@ class AliasTable {
     }
     for (const auto& rest : {small, large})
       for (const std::size_t k : rest) set(k, 1, k);
-    for (std::size_t k = 0; k < kBins; ++k) {
-      drawn[k] += threshold_[k];
-      drawn[alias_[k]] += 1 - double{threshold_[k]};
-    }
-    for (std::size_t k = 0; k < kBins; ++k) density_[k] = static_cast<float>(drawn[k]);
   }
 
-  // Relative to an even one.
-  float density(std::size_t bin) const { return density_[bin]; }
+  // Relative to an even one; what the rounded thresholds amount to.
+  std::array<double, kBins> densities() const {
+    std::array<double, kBins> drawn{};
+    for (std::uint32_t k = 0; k < kBins; ++k) {
+      const double stays = threshold(bins_[k]) / double{kWhole};
+      drawn[k] += stays;
+      drawn[alias(bins_[k])] += 1 - stays;
+    }
+    return drawn;
+  }
 
+  // Bits in place of a choice, which a processor would guess wrong.
   std::size_t draw(std::uint32_t random) const {
-    const std::uint64_t scaled = std::uint64_t{random} * kBins;
-    const std::size_t bin = scaled >> 32;
-    return static_cast<float>(static_cast<std::uint32_t>(scaled) >> 8) * 0x1p-24f < threshold_[bin]
-               ? bin
-               : alias_[bin];
+    const std::uint32_t bin = random / kWhole, packed = bins_[bin];
+    const std::uint32_t stays = random % kWhole < threshold(packed), other = alias(packed);
+    return other ^ ((other ^ bin) & (0 - stays));
   }
 
  private:
+  // The chance that a bin stands for itself, of kWhole, is in the high bits, and the bin for which it stands
+  // otherwise in the low ones. One that always stands for itself is its own alias.
+  static constexpr std::uint32_t kWhole = (1ull << 32) / kBins;
+  static std::uint32_t threshold(std::uint32_t packed) { return packed / kBins; }
+  static std::uint32_t alias(std::uint32_t packed) { return packed % kBins; }
+
   void set(std::size_t bin, double threshold, std::size_t alias) {
-    threshold_[bin] = static_cast<float>(threshold);
-    alias_[bin] = static_cast<std::uint16_t>(alias);
+    const long rounded = std::min(std::lround(threshold * kWhole), long{kWhole} - 1);
+    bins_[bin] = static_cast<std::uint32_t>(rounded * kBins) + static_cast<std::uint32_t>(alias);
   }
 
-  std::array<float, kBins> density_;
-  std::array<float, kBins> threshold_{};
-  std::array<std::uint16_t, kBins> alias_{};
+  std::array<std::uint32_t, kBins> bins_{};  // a cache line holds sixteen
 };
 
 }  // namespace sunbeam

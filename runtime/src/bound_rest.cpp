@@ -17,9 +17,10 @@ Rgb scale_of(const FactoredRest& rest, const FactoredRest::End& end) {
 
 BoundRest::BoundRest(const FactoredRest& rest, Symmetry symmetry) {
   const bool isotropic = symmetry == Symmetry::isotropic;
-  fine_ = isotropic ? Grid{513, 1, false} : Grid{129, 17, false};
+  fine_ = isotropic ? Grid{kScaleCosines, 1, false} : Grid{129, 17, false};
   coarse_ = isotropic ? Grid{kRatioCosines, 1, true} : Grid{25, 7, true};
   for (const auto& end : ends(rest, fine_)) scale_.push_back(to_color4(scale_of(rest, end)));
+  scale_.push_back(Color4{});
 
   const auto nodes = ends(rest, coarse_);
   std::vector<Rgb> scales;
@@ -48,14 +49,6 @@ std::vector<FactoredRest::End> BoundRest::ends(const FactoredRest& rest, const G
 // The azimuth folded into [0, pi/2], over pi/2.
 float BoundRest::quadrant(const Vec3& w) {
   return static_cast<float>(std::atan2(std::abs(w.y), std::abs(w.x)) * (2 / kPi));
-}
-
-BoundRest::OfViewer::OfViewer(const BoundRest& rest, const Cosine& o) : rest_(rest) {
-  const Color4 scale = sunbeam::lerp(rest.scale_.data(), EvenPosition(o.cosine, rest.fine_.cosines));
-  const EvenPosition at(o.root, rest.coarse_.cosines);
-  const Color4* row = rest.ratio_.data() + at.lower * rest.coarse_.cosines;
-  for (std::size_t k = 0; k < ratio_.size(); ++k)
-    ratio_[k] = scale * (row[k] + at.upper_weight * (row[k + ratio_.size()] - row[k]));
 }
 
 Color4 BoundRest::scale_at(const Cosine& cosine, float phi) const {

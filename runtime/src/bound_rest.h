@@ -5,6 +5,7 @@
 // into the first quadrant of an anisotropic film.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "color4.h"
@@ -14,7 +15,7 @@ namespace sunbeam {
 
 class BoundRest {
  public:
-  static constexpr int kRatioCosines = 65;  // of an isotropic table
+  static constexpr int kScaleCosines = 513, kRatioCosines = 65;  // of an isotropic table
 
   BoundRest(const FactoredRest& rest, Symmetry symmetry);
 
@@ -27,19 +28,12 @@ class BoundRest {
 
   bool is_isotropic() const { return fine_.phis == 1; }
 
-  // The rest of an isotropic table for one viewer: what its cosine decides is done.
-  class OfViewer {
-   public:
-    OfViewer(const BoundRest& rest, const Cosine& o);
-    Color4 operator()(const Cosine& i) const {
-      return sunbeam::lerp(rest_.scale_.data(), EvenPosition(i.cosine, rest_.fine_.cosines)) *
-             sunbeam::lerp(ratio_.data(), EvenPosition(i.root, rest_.coarse_.cosines));
-    }
-
-   private:
-    const BoundRest& rest_;
-    std::array<Color4, kRatioCosines> ratio_;  // with the viewer's scale
-  };
+  // Of an isotropic table: scales at even cosines and one node more, and the ratio at nodes even in the
+  // roots.
+  std::span<const Color4> scales() const { return scale_; }
+  const Color4& ratio(int o, int i) const {
+    return ratio_[static_cast<std::size_t>(o * coarse_.cosines + i)];
+  }
 
   // 1/sr, for wo.z > 0 and wi.z > 0, whose cosines o and i are.
   Color4 operator()(const Vec3& wo, const Vec3& wi, const Cosine& o, const Cosine& i) const {

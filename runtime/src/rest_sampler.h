@@ -1,6 +1,6 @@
-// What sample() draws the rest from: for each viewer a density over the root of cos(theta_i), uniform in
-// azimuth. Rows for viewers at even roots of cos(theta_o); between two of them one is chosen by lot, and the
-// density is their mixture.
+// What sample() draws the rest from: for each viewer a density over the root of cos(theta_i), linear between
+// even nodes, uniform in azimuth. Rows for viewers at even roots of cos(theta_o); between two of them one is
+// chosen by lot, and the density is their mixture.
 #pragma once
 
 #include <array>
@@ -8,56 +8,49 @@
 #include <vector>
 
 #include "alias_table.h"
-#include "color4.h"
-#include "sunbeam/core/rng.h"
+#include "facets.h"
 
 namespace sunbeam {
 
 class RestSampler {
  public:
-  static constexpr int kRows = 33;
-  static constexpr int kBins = 64;
+  static constexpr int kNodes = 65;  // of viewers and of lights
 
-  // The viewer of a row; at grazing a little above.
-  static double cosine_of_row(int row) {
-    constexpr double kSmallestCosine = 1e-4;
-    const double root = static_cast<double>(row) / (kRows - 1);
-    return std::max(root * root, kSmallestCosine);
-  }
-  static double middle_of_bin(int bin) { return (bin + 0.5) / kBins; }
+  // Root of the cosine of a node.
+  static double root_of_node(int node) { return static_cast<double>(node) / kIntervals; }
 
-  // In order of rows. `density` of each bin over the root, in any unit, >= 0; `first_chance` of the first
-  // surface.
-  void add_row(std::span<const double> density, double first_chance) {
-    chance_[rows_.size()] = static_cast<float>(first_chance);
-    rows_.emplace_back(density);
+  // In order of viewers. `density` at each node over the root, in any unit, >= 0; returns its integral.
+  double add_row(std::span<const double> density) {
+    std::array<double, kIntervals> power;
+    for (std::size_t k = 0; k < kIntervals; ++k) power[k] = density[k] + density[k + 1];
+    rows_.emplace_back(power);
+    double total = 0;
+    for (const double p : power) total += p / (2 * kIntervals);
+    for (const double d : density) density_.push_back(static_cast<float>(total > 0 ? d / total : 1));
+    return total;
   }
 
-  // Where a viewer lies among the rows.
-  EvenPosition viewer(float root) const { return EvenPosition(root, kRows); }
-  float first_chance(const EvenPosition& viewer) const {
-    return chance_[viewer.lower] + viewer.upper_weight * (chance_[viewer.lower + 1] - chance_[viewer.lower]);
+  // Over the root, of one viewer and light.
+  float density(int viewer, int light) const {
+    return density_[static_cast<std::size_t>(viewer * kNodes + light)];
   }
 
   // Root of cos(theta_i), > 0.
-  double sample(const EvenPosition& viewer, Rng& rng) const {
-    const bool upper = rng.uniform() < viewer.upper_weight;
-    const std::size_t bin = rows_[static_cast<std::size_t>(viewer.lower + (upper ? 1 : 0))].draw(rng.next());
-    return (static_cast<double>(bin) + 1 - rng.uniform()) / kBins;
-  }
-  // Of a direction whose root that is, 1/sr; `per_root` = 1 / root.
-  float pdf(const EvenPosition& viewer, float root, float per_root) const {
-    const int bin = std::min(static_cast<int>(root * kBins), kBins - 1);
-    const auto* row = rows_.data() + viewer.lower;
-    const float low = row[0].density(static_cast<std::size_t>(bin)),
-                high = row[1].density(static_cast<std::size_t>(bin));
-    constexpr float kPerSolidAngle = static_cast<float>(kInvPi / 4);  // d(root) / d(cosine) / (2 pi)
-    return (low + viewer.upper_weight * (high - low)) * kPerSolidAngle * per_root;
+  float sample(int viewer, Rng& rng) const {
+    const std::size_t k = rows_[static_cast<std::size_t>(viewer)].draw(rng.next());
+    const float* ends = density_.data() + static_cast<std::size_t>(viewer) * kNodes + k;
+    // The greater of two uniform numbers has a density that rises from 0, the lesser one that falls to it.
+    const float a = 1 - uniform_float(rng), b = 1 - uniform_float(rng);
+    const float rises = uniform_float(rng) * (ends[0] + ends[1]) < ends[1];
+    const float inside = std::min(a, b) + rises * std::abs(a - b);
+    return (static_cast<float>(k) + inside) * (1.0f / kIntervals);
   }
 
  private:
-  std::vector<AliasTable<kBins>> rows_;
-  std::array<float, kRows> chance_{};
+  static constexpr int kIntervals = kNodes - 1;
+
+  std::vector<AliasTable<kIntervals>> rows_;
+  std::vector<float> density_;
 };
 
 }  // namespace sunbeam

@@ -16,12 +16,19 @@ constexpr double kLeastLog = -80, kMostLog = 20;
 constexpr double kLeastChance = 0.02;  // of either technique: their estimates may be far off
 constexpr double kLeastValue = 1e-18;  // of B over its frame
 
-int thickness_nodes(const Table& table) {
+int nodes_between(const Table& table, double from_nm, double to_nm) {
   const auto& nm = table.factors.wavelengths.nm;
-  const Axis& axis = table.factors.grid[0];
   const double fringes =
-      fringe_order(table.material, 1) * (axis.high() - axis.low()) / *std::min_element(nm.begin(), nm.end());
+      fringe_order(table.material, 1) * (to_nm - from_nm) / *std::min_element(nm.begin(), nm.end());
   return std::max(kLeastThicknesses, static_cast<int>(std::ceil(fringes * kNodesPerFringe)) + 1);
+}
+int thickness_nodes(const Table& table) {
+  return nodes_between(table, table.factors.grid[0].low(), table.factors.grid[0].high());
+}
+
+// A smooth film's fringes are not in L.
+double path_of(const Material& material, double cosine) {
+  return material.is_smooth() ? 1 : fringe_order(material, cosine) / fringe_order(material, 1);
 }
 
 // The weighted mean of the pigment's spectrum in each channel, and over channels.
@@ -45,17 +52,26 @@ double node_cosine(int c) {
 
 }  // namespace
 
-TexturedFrame::TexturedFrame(const Material& material, double base_ior, double depth)
-    : optical_depth(static_cast<float>(depth)) {
+TexturedMaterial::TexturedMaterial(const Material& material)
+    : bends(material.transmission == Transmission::refract),
+      exterior_ior(material.exterior_ior),
+      pigment_thickness_nm(material.pigment_thickness_nm) {
   const double blur2 = square(0.3 * material.roughness.u);
   film_scale = static_cast<float>(1 / (1 + blur2));
   film_offset = static_cast<float>(blur2 / (1 + blur2));
-  const bool bends = material.transmission == Transmission::refract;
-  const double ratio2 = bends ? square(material.exterior_ior / base_ior) : 1;
-  below_scale = static_cast<float>(ratio2);
-  below_offset = static_cast<float>(1 - ratio2);
+  path_scale =
+      material.is_smooth() ? 0 : static_cast<float>(square(material.exterior_ior / material.film_ior));
+  path_offset = 1 - path_scale;
+  least_path = static_cast<float>(square(path_of(material, 0)));
   least_below = static_cast<float>(
       square(material.is_smooth() ? kLeastSmoothFrame : std::max(std::sqrt(blur2), kLeastFrame)));
+}
+
+TexturedFrame::TexturedFrame(const TexturedMaterial& material, double base_ior, double depth)
+    : least_below(material.least_below), optical_depth(static_cast<float>(depth)) {
+  const double ratio2 = material.bends ? square(material.exterior_ior / base_ior) : 1;
+  below_scale = static_cast<float>(ratio2);
+  below_offset = static_cast<float>(1 - ratio2);
 }
 
 // Goes through the nodes; what depends on few of the parameters is found once.
@@ -95,7 +111,7 @@ class TexturedRest::Builder {
            at.weight[3] * from[3 * stride];
   }
 
-  // Of all thicknesses, wavelengths and cosines, and of normal incidence.
+  // Of all thicknesses, wavelengths and cosines, of normal incidence, and of paths.
   void find_order_stencils() {
     const Factors& factors = table_.factors;
     const double straight_down = fringe_order(table_.material, 1);
@@ -108,6 +124,10 @@ class TexturedRest::Builder {
           arrival_at_.push_back(
               order_stencil(factors.arrival.axes()[2], fringe_order(table_.material, cosine) * per));
       }
+    if (factors.arrival.empty()) return;
+    for (int p = 0; p < rest_.paths_; ++p)
+      for (const double nm : waves_.nm)
+        path_at_.push_back(order_stencil(factors.arrival.axes()[2], straight_down * rest_.path_nm(p) / nm));
   }
 
   void build_at(int n, int s) {
@@ -120,20 +140,36 @@ class TexturedRest::Builder {
     returned_.clear();
     arrival_.clear();
     for (std::size_t k = 0; k < waves_.size(); ++k) take_slices(k);
+    weights_.clear();
+    norms_.clear();
     for (int d = 0; d < rest_.axes_[0].size(); ++d) {
-      find_shares(d);
-      const int cell = (d * rest_.axes_[1].size() + n) * rest_.axes_[2].size() + s;
-      fold(d, rest_.nodes_.data() + static_cast<std::size_t>(cell) * kCosines);
+      find_shares(
+          [&](std::size_t k, std::size_t c) -> const OrderStencil& {
+            return arrival_at_[(d * waves_.size() + k) * kCosines + c];
+          },
+          [&](int) { return rest_.axes_[0].node(d); });
+      weigh(d);
     }
+    for (int p = 0; p < rest_.paths_; ++p) {
+      find_shares(
+          [&](std::size_t k, std::size_t) -> const OrderStencil& { return path_at_[p * waves_.size() + k]; },
+          [&](int c) { return thickness_of(p, c); });
+      fold(p, rest_.nodes_.data() + p * rest_.stride_ + rest_.row(n, s));
+    }
+  }
+
+  double thickness_of(int p, int c) const {
+    return rest_.path_nm(p) / path_of(table_.material, cosines_[static_cast<std::size_t>(c)]);
   }
 
   // What the pigment leaves of each wavelength, relative to the one that it absorbs least; and frames.
   void find_pigment() {
-    const TexturedFrame frame(table_.material, base_ior_, depth_);
+    const TexturedMaterial shared(table_.material);
+    const TexturedFrame frame(shared, base_ior_, depth_);
     pigment_.assign(waves_.size() * kCosines, 1);
     for (int c = 0; c < kCosines; ++c) {
       const auto cosine = static_cast<float>(cosines_[c]);
-      film_cosines_[c] = std::min(std::sqrt(frame.film_cosine_squared(cosine)), 1.0f);
+      film_cosines_[c] = std::min(std::sqrt(shared.film_cosine_squared(cosine)), 1.0f);
       path_[c] = 1 / std::sqrt(frame.pigment_cosine_squared(cosine));
       const double per_cosine = 1 / arrival_cosine(material_, cosines_[c]);
       least_decay_[c] = depth_ * least_ * per_cosine;
@@ -182,22 +218,23 @@ class TexturedRest::Builder {
     return result;
   }
 
-  // A of every wavelength and cosine over that of the pigment where it absorbs least.
-  void find_shares(int d) {
+  // A of every wavelength and cosine over that of the pigment where it absorbs least. `arrival_at` of a
+  // wavelength and cosine, `thickness_at` of a cosine.
+  template <class ArrivalAt, class ThicknessAt>
+  void find_shares(ArrivalAt arrival_at, ThicknessAt thickness_at) {
     share_ = pigment_;
-    if (table_.factors.arrival.empty()) return find_smooth_shares(d);
-    for (std::size_t k = 0; k < waves_.size(); ++k) {
-      const OrderStencil* at = arrival_at_.data() + (d * waves_.size() + k) * kCosines;
+    if (table_.factors.arrival.empty()) return find_smooth_shares(thickness_at);
+    for (std::size_t k = 0; k < waves_.size(); ++k)
       for (std::size_t c = 0; c < kCosines; ++c)
-        share_[k * kCosines + c] += blend(arrival_[k], at[c], kCosines, c);
-    }
+        share_[k * kCosines + c] += blend(arrival_[k], arrival_at(k, c), kCosines, c);
     exponentiate();
   }
-  void find_smooth_shares(int d) {
+  template <class ThicknessAt>
+  void find_smooth_shares(ThicknessAt thickness_at) {
     exponentiate();
     std::array<float, kMostWavelengths> passing;
     for (int c = 0; c < kCosines; ++c) {
-      rest_.film_.powers(rest_.axes_[0].node(d), base_ior_, static_cast<float>(cosines_[c]), passing.data());
+      rest_.film_.powers(thickness_at(c), base_ior_, static_cast<float>(cosines_[c]), passing.data());
       for (std::size_t k = 0; k < waves_.size(); ++k) share_[k * kCosines + c] *= passing[k];
     }
   }
@@ -218,26 +255,42 @@ class TexturedRest::Builder {
     return sum;
   }
 
-  void fold(int d, Color4* row) {
-    std::array<FloatRgb, kCosines> reflectance;
-    rest_.film_.fold(rest_.axes_[0].node(d), base_ior_, film_cosines_, reflectance.data());
-    std::array<Rgb, kCosines> b{};
+  // g A* of each wavelength at a thickness, and fold(g A* A*).
+  void weigh(int d) {
     Rgb norm;
     for (std::size_t k = 0; k < waves_.size(); ++k) {
       const double returned = blend(returned_[k], returned_at_[d * waves_.size() + k], 1, 0);
       const double gain =
           material_.radiance_scale() * waves_.albedo[k] * kInvPi / (1 - waves_.albedo[k] * returned);
       const double arriving = hemispherical(share_.data() + k * kCosines);
-      const Rgb weight = gain * arriving * waves_.weight[k];
-      norm += weight * arriving;
-      for (int c = 0; c < kCosines; ++c) b[c] += weight * double{share_[k * kCosines + c]};
+      weights_.push_back(gain * arriving);
+      norm += gain * arriving * arriving * waves_.weight[k];
     }
-    for (int c = 0; c < kCosines; ++c) row[c] = node(b[c], norm, c, reflectance[c]);
+    norms_.push_back(norm);
+  }
+
+  void fold(int p, Color4* row) {
+    for (int c = 0; c < kCosines; ++c) {
+      const double thickness = thickness_of(p, c);
+      const EvenAxis& axis = rest_.axes_[0];
+      const EvenPosition d = axis.locate(axis.clamped(thickness));
+      const double upper{d.upper_weight};
+      const double* weights = weights_.data() + d.lower * waves_.size();
+      Rgb b;
+      for (std::size_t k = 0; k < waves_.size(); ++k)
+        b += lerp(upper, weights[k], weights[k + waves_.size()]) * double{share_[k * kCosines + c]} *
+             waves_.weight[k];
+      const Rgb norm = (1 - upper) * norms_[d.lower] + upper * norms_[d.lower + 1];
+      FloatRgb reflectance;
+      rest_.film_.fold(thickness, base_ior_, {&film_cosines_[c], 1}, &reflectance);
+      row[c] = node(b, norm, c, reflectance);
+    }
   }
 
   // `b` is the rest's directional albedo, `norm` its hemispherical integral; both without the least decay.
   Color4 node(const Rgb& b, const Rgb& norm, int c, const FloatRgb& reflectance) const {
-    const Color4 passing = rest_.passing(reflectance);
+    const Color4 passing = material_.is_smooth() ? rest_.passing(reflectance)
+                                                 : TexturedMaterial::passing(film_cosines_[c]) + Color4{};
     Color4 result{};
     for (int channel = 0; channel < 3; ++channel) {
       const double albedo = std::max({b[channel], kLeastShare * mean(b), kLeastValue});
@@ -262,7 +315,8 @@ class TexturedRest::Builder {
   TexturedRest& rest_;
   double least_;  // absorption of any wavelength
   std::vector<double> cosines_;
-  std::vector<OrderStencil> returned_at_, arrival_at_;
+  std::vector<OrderStencil> returned_at_, arrival_at_;  // of thicknesses
+  std::vector<OrderStencil> path_at_;                   // of paths, for arrival_
 
   Material material_;
   double base_ior_ = 1, depth_ = 0;
@@ -271,6 +325,8 @@ class TexturedRest::Builder {
   std::vector<float> pigment_, share_;        // (wavelength, cosine)
   std::vector<std::vector<float>> returned_;  // of each wavelength: (fringe_order)
   std::vector<std::vector<float>> arrival_;   // and (fringe_order, cosine)
+  std::vector<double> weights_;               // (thickness, wavelength)
+  std::vector<Rgb> norms_;                    // (thickness)
 };
 
 TexturedRest::TexturedRest(const Table& table)
@@ -279,23 +335,25 @@ TexturedRest::TexturedRest(const Table& table)
             EvenAxis(table.factors.grid[1], kIorNodes), EvenAxis(table.factors.grid[2], kAbsorptionNodes)},
       total_(FilmWavelengths(table.factors.wavelengths).total_weight),
       absorption_(mean_absorption(table.factors.wavelengths)) {
-  const int absorption = kCosines, ior = axes_[2].size() * absorption, thickness = axes_[1].size() * ior;
-  for (int k = 0; k < 8; ++k)
-    corner_[k] = (k & 4 ? thickness : 0) + (k & 2 ? ior : 0) + (k & 1 ? absorption : 0);
-  nodes_.resize(static_cast<std::size_t>(axes_[0].size()) * thickness);
+  const double from = axes_[0].low() * path_of(table.material, 0), to = axes_[0].high();
+  paths_ = nodes_between(table, from, to);
+  first_path_ = static_cast<float>(from);
+  if (to > from) per_extent_ = static_cast<float>(1 / (to - from));
+  stride_ = axes_[1].size() * axes_[2].size() * kCosines;
+  for (int k = 0; k < 4; ++k) corner_[k] = static_cast<int>(row(k >> 1, k & 1));
+  nodes_.resize(static_cast<std::size_t>(paths_ * stride_));
   Builder(table, *this).build();
 }
 
 TexturedPlace TexturedRest::place(const Parameters& at) const {
-  const EvenPosition d = axes_[0].locate(at.film_thickness_nm), n = axes_[1].locate(at.base_ior),
-                     s = axes_[2].locate(at.absorption_per_nm);
-  TexturedPlace place;
-  place.row = static_cast<std::size_t>(d.lower * corner_[4] + n.lower * corner_[2] + s.lower * corner_[1]);
-  for (int k = 0; k < 8; ++k)
-    place.weight[k] = (k & 4 ? d.upper_weight : 1 - d.upper_weight) *
-                      (k & 2 ? n.upper_weight : 1 - n.upper_weight) *
-                      (k & 1 ? s.upper_weight : 1 - s.upper_weight);
-  return place;
+  const EvenPosition n = axes_[1].locate(at.base_ior), s = axes_[2].locate(at.absorption_per_nm);
+  const auto nearest = [](const EvenPosition& x) { return x.lower + (x.upper_weight < 0.5f ? 0 : 1); };
+  const float n_upper = n.upper_weight, s_upper = s.upper_weight;
+  return {
+      static_cast<float>(at.film_thickness_nm),
+      row(n.lower, s.lower),
+      row(nearest(n), nearest(s)),
+      {(1 - n_upper) * (1 - s_upper), (1 - n_upper) * s_upper, n_upper * (1 - s_upper), n_upper * s_upper}};
 }
 
 }  // namespace sunbeam

@@ -20,22 +20,47 @@ class TexturedRest {
 
   TexturedPlace place(const Parameters& at) const;
 
-  // L at the root of a cosine; the last lane is the chance of sampling the first surface.
-  Color4 at(const TexturedPlace& place, float root) const {
-    const EvenPosition c(root, kCosines);
-    Color4 low{}, high{};
-    for (std::size_t k = 0; k < 8; ++k) {
-      const Color4* row = nodes_.data() + place.row + corner_[k] + c.lower;
-      low += place.weight[k] * row[0];
-      high += place.weight[k] * row[1];
+  // A direction among the nodes.
+  struct Direction {
+    EvenPosition path, cosine;
+  };
+  // `path` is the root of TexturedMaterial::path_squared, `root` that of the cosine.
+  Direction direction(const TexturedPlace& place, float path, float root) const {
+    const float x = (place.thickness_nm * path - first_path_) * per_extent_;
+    return {{std::max(x, 0.0f), paths_}, {root, kCosines}};
+  }
+
+  // L; the last lane is the chance of sampling the first surface, interpolated too.
+  Color4 at(const TexturedPlace& place, const Direction& w) const {
+    const Color4* first = nodes_.data() + place.row + w.path.lower * stride_ + w.cosine.lower;
+    const Color4* second = first + stride_;
+    Color4 low[2]{}, high[2]{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Color4 weight = place.weight[k] + Color4{};
+      low[0] += weight * first[corner_[k]];
+      high[0] += weight * first[corner_[k] + 1];
+      low[1] += weight * second[corner_[k]];
+      high[1] += weight * second[corner_[k] + 1];
     }
-    return low + c.upper_weight * (high - low);
+    for (int k = 0; k < 2; ++k) low[k] += w.cosine.upper_weight * (high[k] - low[k]);
+    return low[0] + w.path.upper_weight * (low[1] - low[0]);
+  }
+
+  // The chance of sampling the first surface, from the nearest parameters: they are given, and so the choice
+  // need not change smoothly with them.
+  float first_chance(const TexturedPlace& place, const Direction& w) const {
+    const int path = w.path.lower + (w.path.upper_weight < 0.5f ? 0 : 1);
+    const Color4* row = nodes_.data() + place.nearest + path * stride_ + w.cosine.lower;
+    return row[0][3] + w.cosine.upper_weight * (row[1][3] - row[0][3]);
   }
 
   // Asks for what at() will read, to work meanwhile.
-  void prefetch(const TexturedPlace& place, float root) const {
-    const EvenPosition c(root, kCosines);
-    for (const int corner : corner_) __builtin_prefetch(nodes_.data() + place.row + corner + c.lower);
+  void prefetch(const TexturedPlace& place, const Direction& w) const {
+    const Color4* first = nodes_.data() + place.row + w.path.lower * stride_ + w.cosine.lower;
+    for (const int corner : corner_) {
+      __builtin_prefetch(first + corner);
+      __builtin_prefetch(first + corner + stride_);
+    }
   }
 
   // The film's transmittance folded, from its reflectance; kept above 0.
@@ -54,12 +79,23 @@ class TexturedRest {
 
   class Builder;
 
+  // At the first path and cosine.
+  std::size_t row(int base_ior, int absorption) const {
+    return static_cast<std::size_t>((base_ior * axes_[2].size() + absorption) * kCosines);
+  }
+  double path_nm(int node) const {
+    return per_extent_ > 0 ? first_path_ + node / ((paths_ - 1) * double{per_extent_}) : double{first_path_};
+  }
+
   FilmSpectrum film_;
-  std::array<EvenAxis, 3> axes_;  // in the order of kParameterNames
-  std::array<int, 8> corner_;     // distance of a place's rows from the first, in nodes
-  FloatRgb total_;                // the fold of 1
-  Color4 absorption_;             // a of each channel, and their mean
-  std::vector<Color4> nodes_;     // (film_thickness_nm, base_ior, absorption_per_nm, root of the cosine)
+  std::array<EvenAxis, 3> axes_;  // of the parameters, in the order of kParameterNames
+  int paths_;
+  float first_path_, per_extent_ = 0;  // nodes are even in thickness times path
+  int stride_;                         // from path to path, in nodes
+  std::array<int, 4> corner_;          // distance of a place's rows from the first
+  FloatRgb total_;                     // the fold of 1
+  Color4 absorption_;                  // a of each channel, and their mean
+  std::vector<Color4> nodes_;          // (path, base_ior, absorption_per_nm, root of the cosine)
 };
 
 }  // namespace sunbeam

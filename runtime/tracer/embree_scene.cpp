@@ -36,8 +36,8 @@ struct Surface {
   int object = -1, light = -1;
   double offset = 0;
   std::vector<Vec3> tangents = {};  // of the triangles of a flat mesh, of the vertices of a smooth one
-  bool has_relief = false;
-  std::vector<UvDerivatives> derivatives = {};  // of the vertices of a mesh with relief
+  bool has_coordinates = false;
+  std::vector<UvDerivatives> derivatives = {};  // of the vertices of a mesh with coordinates
 };
 
 double largest_coordinate(const Vec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
@@ -56,9 +56,10 @@ std::vector<Vec3> tangents_of(const Mesh& mesh) {
   return mesh.normals.empty() ? triangle_tangents(mesh) : vertex_tangents(mesh);
 }
 
-bool has_relief(const Scene& scene, int object) {
+bool needs_coordinates(const Scene& scene, int object) {
   const int material = scene.objects[static_cast<std::size_t>(object)].material;
-  return scene.materials[static_cast<std::size_t>(material)].relief.has_value();
+  const SceneMaterial& description = scene.materials[static_cast<std::size_t>(material)];
+  return description.relief || description.varies();
 }
 
 // --- spheres: Embree calls back, and the roots are found in double precision ---
@@ -244,8 +245,8 @@ void EmbreeScene::Impl::collect(const Scene& source) {
   for (Surface& surface : surfaces) {
     surface.offset = surface.sphere ? offset_of(*surface.sphere) : offset_of(*surface.mesh);
     if (surface.mesh) surface.tangents = tangents_of(*surface.mesh);
-    surface.has_relief = surface.object >= 0 && has_relief(source, surface.object);
-    if (surface.mesh && surface.has_relief) surface.derivatives = vertex_derivatives(*surface.mesh);
+    surface.has_coordinates = surface.object >= 0 && needs_coordinates(source, surface.object);
+    if (surface.mesh && surface.has_coordinates) surface.derivatives = vertex_derivatives(*surface.mesh);
   }
 }
 
@@ -293,7 +294,7 @@ std::optional<SurfaceHit> EmbreeScene::intersect(const Ray& ray) const {
       surface.sphere
           ? sphere_point(*surface.sphere, ray.origin + static_cast<double>(query.ray.tfar) * ray.direction)
           : triangle_point(surface, query.hit);
-  if (surface.sphere && surface.has_relief) add_coordinates(point, surface.sphere->radius);
+  if (surface.sphere && surface.has_coordinates) add_coordinates(point, surface.sphere->radius);
   return SurfaceHit{
       .position = point.position,
       .geometric_normal = point.geometric_normal,

@@ -18,7 +18,8 @@ struct SurfaceHit {
   // normal. u of a sphere is the longitude about its z axis. Zero where no direction is known: without
   // texture coordinates, where they are degenerate, at the poles of a sphere.
   Vec3 tangent;
-  // Texture coordinates and dp/du, dp/dv, interpolated; only for objects whose material has a relief, else 0.
+  // Texture coordinates and dp/du, dp/dv, interpolated; only for objects whose material needs them, having a
+  // relief or varying, else 0.
   Point2 uv;
   UvDerivatives derivatives;
   double distance;  // from the origin of the ray

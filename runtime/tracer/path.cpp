@@ -59,10 +59,10 @@ struct PathTracer::Vertex {
 };
 
 PathTracer::PathTracer(const Scene& scene, const EmbreeScene& geometry, const Lights& lights,
-                       std::span<const Bsdf* const> bsdfs)
+                       std::span<const SurfaceBsdf> bsdfs)
     : scene_(scene), geometry_(geometry), lights_(lights), bsdfs_(bsdfs) {}
 
-PathTracer::Vertex PathTracer::make_vertex(const Ray& ray, const SurfaceHit& hit) const {
+PathTracer::Vertex PathTracer::make_vertex(const Ray& ray, const SurfaceHit& hit, BsdfRoom& room) const {
   const Vec3 wo = -ray.direction;
   const double side = dot(wo, hit.geometric_normal) < 0 ? -1 : 1;
   const auto material =
@@ -78,13 +78,15 @@ PathTracer::Vertex PathTracer::make_vertex(const Ray& ray, const SurfaceHit& hit
   }
   const Vec3 tangent = turned_tangent(hit.tangent, hit.shading_normal, description.tangent_rotation_deg);
   const Frame frame = Frame::from_normal_and_tangent(normal, tangent);
+  const SurfaceBsdf& bsdf = bsdfs_[material];
+  const Parameters parameters = description.parameters_at(hit.uv);
   return {hit.position,
           geometric,
           frame,
           frame.to_local(wo),
           hit.offset,
-          bsdfs_[material],
-          description.film_thickness_nm.value_or(0),
+          bsdf.uniform ? bsdf.uniform : &bsdf.varying->at(parameters, room),
+          parameters.film_thickness_nm,
           smooth};
 }
 
@@ -130,7 +132,8 @@ Rgb PathTracer::radiance(Ray ray, Rng& rng, PathCounts& counts, FirstHit& first)
     if (!hit || hit->light >= 0 || bounce == scene_.render.max_bounces) return result;
 
     ++counts.vertices;
-    const Vertex vertex = make_vertex(ray, *hit);
+    BsdfRoom room;
+    const Vertex vertex = make_vertex(ray, *hit, room);
     if (bounce == 0) first = vertex.as_first_hit(hit->distance);
     result += throughput * direct_light(vertex, rng, counts);
     const auto sample = vertex.bsdf->sample(vertex.wo, rng);

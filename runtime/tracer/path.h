@@ -15,7 +15,7 @@
 #include "runtime/tracer/lights.h"
 #include "runtime/tracer/pixel_sums.h"
 #include "runtime/tracer/ray.h"
-#include "sunbeam/bsdf.h"
+#include "runtime/tracer/surface_bsdf.h"
 #include "sunbeam/core/rng.h"
 
 namespace sunbeam {
@@ -29,7 +29,7 @@ class PathTracer {
  public:
   // bsdfs[i] belongs to scene.materials[i]. Everything passed must outlive this.
   PathTracer(const Scene& scene, const EmbreeScene& geometry, const Lights& lights,
-             std::span<const Bsdf* const> bsdfs);
+             std::span<const SurfaceBsdf> bsdfs);
 
   // One estimate of the radiance that arrives along `ray`; not finite if a BSDF returned something not
   // finite. `first` is filled in.
@@ -41,12 +41,12 @@ class PathTracer {
 
   Rgb emission(const Ray& ray, const MaybeHit& hit, std::optional<double> bsdf_pdf) const;
   Rgb direct_light(const Vertex& vertex, Rng& rng, PathCounts& counts) const;
-  Vertex make_vertex(const Ray& ray, const SurfaceHit& hit) const;
+  Vertex make_vertex(const Ray& ray, const SurfaceHit& hit, BsdfRoom& room) const;
 
   const Scene& scene_;
   const EmbreeScene& geometry_;
   const Lights& lights_;
-  std::span<const Bsdf* const> bsdfs_;
+  std::span<const SurfaceBsdf> bsdfs_;
 };
 
 }  // namespace sunbeam

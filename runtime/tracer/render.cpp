@@ -77,7 +77,7 @@ void require_outside(const EmbreeScene& geometry, const Vec3& position) {
 
 class Renderer {
  public:
-  Renderer(const Scene& scene, std::span<const Bsdf* const> bsdfs, const RenderSettings& settings,
+  Renderer(const Scene& scene, std::span<const SurfaceBsdf> bsdfs, const RenderSettings& settings,
            const PixelWindow& window, Clock::time_point start)
       : settings_(settings),
         window_(window),
@@ -307,7 +307,7 @@ void require_range(const char* name, int value, int low, int high) {
     throw Error(fmt::format("render settings: {}: found {}; allowed: {} to {}", name, value, low, high));
 }
 
-RenderSettings complete(const Scene& scene, std::span<const Bsdf* const> bsdfs, RenderSettings settings) {
+RenderSettings complete(const Scene& scene, std::span<const SurfaceBsdf> bsdfs, RenderSettings settings) {
   if (settings.width == 0) settings.width = scene.render.width;
   if (settings.height == 0) settings.height = scene.render.height;
   if (settings.spp == 0) settings.spp = scene.render.spp;
@@ -319,7 +319,8 @@ RenderSettings complete(const Scene& scene, std::span<const Bsdf* const> bsdfs, 
     throw Error(fmt::format("render: found {} BSDFs; allowed: one for each of {} materials", bsdfs.size(),
                             scene.materials.size()));
   for (std::size_t i = 0; i < bsdfs.size(); ++i)
-    if (!bsdfs[i]) throw Error(fmt::format("render: material \"{}\" has no BSDF", scene.materials[i].name));
+    if (!bsdfs[i].uniform && !bsdfs[i].varying)
+      throw Error(fmt::format("render: material \"{}\" has no BSDF", scene.materials[i].name));
   return settings;
 }
 
@@ -339,7 +340,7 @@ PixelWindow window_of(const RenderSettings& settings) {
   return window;
 }
 
-RenderResult render_in_arena(const Scene& scene, std::span<const Bsdf* const> bsdfs,
+RenderResult render_in_arena(const Scene& scene, std::span<const SurfaceBsdf> bsdfs,
                              const RenderSettings& settings, Clock::time_point start) {
   const PixelWindow window = window_of(settings);
   const auto run = [&] {
@@ -360,7 +361,7 @@ RenderResult render_in_arena(const Scene& scene, std::span<const Bsdf* const> bs
 
 }  // namespace
 
-RenderResult render(const Scene& scene, std::span<const Bsdf* const> bsdfs, const RenderSettings& settings) {
+RenderResult render(const Scene& scene, std::span<const SurfaceBsdf> bsdfs, const RenderSettings& settings) {
   const Clock::time_point start = Clock::now();
   const std::clock_t cpu_start = std::clock();
   RenderResult result = render_in_arena(scene, bsdfs, complete(scene, bsdfs, settings), start);

@@ -9,7 +9,7 @@
 
 #include "runtime/tracer/image.h"
 #include "runtime/tracer/scene.h"
-#include "sunbeam/bsdf.h"
+#include "runtime/tracer/surface_bsdf.h"
 
 namespace sunbeam {
 
@@ -66,6 +66,6 @@ struct RenderSettings {
 // number of samples, never their values, depend on the machine. A resumed picture equals the uninterrupted
 // one but for the single precision of `resume`. Pixels are box-filtered. Throws Error for settings out of
 // range, and lets exceptions of the BSDFs through.
-RenderResult render(const Scene& scene, std::span<const Bsdf* const> bsdfs, const RenderSettings& settings);
+RenderResult render(const Scene& scene, std::span<const SurfaceBsdf> bsdfs, const RenderSettings& settings);
 
 }  // namespace sunbeam

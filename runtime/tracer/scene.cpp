@@ -164,9 +164,44 @@ void read_light(const ConfigTable& table, Scene& scene) {
   }
 }
 
-std::optional<double> optional_number(const ConfigTable& table, std::string_view key, double low) {
+Point2 point2(const ConfigTable& table, std::string_view key, const Range& allowed) {
+  const auto numbers = table.numbers(key, allowed);
+  if (numbers.size() != 2)
+    table.fail(key, fmt::format("found {} numbers; allowed: 2, along u and v", numbers.size()));
+  return {numbers[0], numbers[1]};
+}
+
+HeightMap read_noise(const ConfigTable& table) {
+  constexpr int kMostCells = 512;
+  const int octaves = table.integer("octaves", 1, 8, 3);
+  return noise_map(table.integer("cells", 1, kMostCells >> octaves, 4), octaves,
+                   static_cast<std::uint64_t>(table.integer("seed", 0, std::numeric_limits<int>::max(), 1)));
+}
+
+// {from, to} and one of ramp, bands, noise and file.
+ParameterField read_varying_field(const ConfigTable& table, const Range& allowed) {
+  ParameterField field{
+      .from = table.number("from", allowed), .to = table.number("to", allowed), .along = {}, .map = {}};
+  if (table.has("ramp") + table.has("bands") + table.has("noise") + table.has("file") != 1)
+    table.fail("from", "allowed beside from and to: exactly one of ramp, bands, noise and file");
+  constexpr Range kRepeats{-1e4, 1e4}, kTiles{1e-3, 1e4};
+  if (table.has("ramp") || table.has("bands")) {
+    field.kind = table.has("ramp") ? ParameterField::Kind::ramp : ParameterField::Kind::bands;
+    field.along = point2(table, table.has("ramp") ? "ramp" : "bands", kRepeats);
+    return field;
+  }
+  field.kind = ParameterField::Kind::map;
+  field.along = table.has("tiles") ? point2(table, "tiles", kTiles) : Point2{1, 1};
+  field.map = std::make_shared<HeightMap>(table.has("noise") ? read_noise(table.table("noise"))
+                                                             : load_named_file(table, load_height_map));
+  return field;
+}
+
+std::optional<ParameterField> read_field(const ConfigTable& table, std::string_view key, double low) {
   if (!table.has(key)) return {};
-  return table.number(key, {low, Range().high});
+  const Range allowed{low, Range().high};
+  if (table.is_table(key)) return read_varying_field(table.table(key), allowed);
+  return ParameterField::of(table.number(key, allowed));
 }
 
 // Scales by number: `around` of them to a unit of u and `rows` rows to a unit of v. The default is the number
@@ -192,12 +227,10 @@ Relief read_scales(const ConfigTable& table) {
 
 Relief read_bump(const ConfigTable& table) {
   const HeightMap map = load_named_file(table, load_height_map);
-  const auto tiles = table.has("tiles") ? table.numbers("tiles", {1e-3, 1e5}) : std::vector<double>{1, 1};
-  if (tiles.size() != 2)
-    table.fail("tiles", fmt::format("found {} numbers; allowed: 2, along u and v", tiles.size()));
+  const Point2 tiles = table.has("tiles") ? point2(table, "tiles", {1e-3, 1e5}) : Point2{1, 1};
   return {.map = std::make_shared<HeightMap>(map),
-          .tiles = {tiles[0], tiles[1]},
-          .height = table.number("height", {-2, 2}) / tiles[0]};
+          .tiles = tiles,
+          .height = table.number("height", {-2, 2}) / tiles.x};
 }
 
 std::optional<Relief> read_relief(const ConfigTable& table) {
@@ -218,9 +251,9 @@ SceneMaterial read_material(const ConfigTable& table) {
     return material;
   }
   material.type = SceneMaterial::Type::skin;
-  material.film_thickness_nm = optional_number(table, "film_thickness_nm", 0);
-  material.base_ior = optional_number(table, "base_ior", 1);
-  material.absorption_per_nm = optional_number(table, "absorption_per_nm", 0);
+  constexpr std::array<double, 3> kLowest = {0, 1, 0};
+  for (std::size_t k = 0; k < kParameterNames.size(); ++k)
+    material.parameters[k] = read_field(table, kParameterNames[k], kLowest[k]);
   material.tangent_rotation_deg = table.number("tangent_rotation_deg", {-360, 360}, 0.0);
   return material;
 }

@@ -2,6 +2,8 @@
 // z up; lengths are in one arbitrary unit. Whoever builds a Scene by hand must keep to the same limits.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
 #include <variant>
@@ -10,8 +12,10 @@
 #include "runtime/config/config.h"
 #include "runtime/tracer/image.h"
 #include "runtime/tracer/mesh.h"
+#include "runtime/tracer/parameter_field.h"
 #include "runtime/tracer/relief.h"
 #include "sunbeam/core/vec.h"
+#include "sunbeam/parameters.h"
 
 namespace sunbeam {
 
@@ -72,11 +76,22 @@ struct SceneMaterial {
   Type type = Type::diffuse;
   Rgb albedo{0.5};  // type diffuse only
   // Type skin only: what replaces the value of the recipe.
-  std::optional<double> film_thickness_nm, base_ior, absorption_per_nm;
+  std::array<std::optional<ParameterField>, 3> parameters;  // in the order of kParameterNames
   // Turns the local x axis of the BSDF away from the direction of increasing u, counter-clockwise about the
   // shading normal on the outer side of the surface (that of its winding).
   double tangent_rotation_deg = 0;
   std::optional<Relief> relief;  // bump map
+
+  // Whether a parameter depends on the texture coordinates.
+  bool varies() const {
+    return std::any_of(parameters.begin(), parameters.end(),
+                       [](const auto& field) { return field && !field->is_constant(); });
+  }
+  // 0 where no field is given.
+  Parameters parameters_at(const Point2& uv) const {
+    const auto value = [&](std::size_t k) { return parameters[k] ? parameters[k]->at(uv) : 0; };
+    return {value(0), value(1), value(2)};
+  }
 };
 
 struct Sphere {

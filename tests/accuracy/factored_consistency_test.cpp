@@ -41,6 +41,29 @@ TEST_P(FactoredConsistency, SampledAlbedoIsTheAlbedo) {
   }
 }
 
+// Lists of every length modulo four, lights at and below the horizon among them, and nothing written beyond.
+TEST_P(FactoredConsistency, ListsOfLightsAreEvaluatedAsSingleOnes) {
+  const TableBsdf table = bsdf();
+  Rng rng(4, 0);
+  for (std::size_t count = 0; count < 40; ++count) {
+    const Vec3 wo = test::uniform_hemisphere({rng.uniform(), rng.uniform()});
+    std::vector<Vec3> wi;
+    for (std::size_t k = 0; k < count; ++k) wi.push_back(sample_sphere({rng.uniform(), rng.uniform()}));
+    if (count > 20) wi[7] = {1, 0, 0};
+    const Rgb beyond(123);
+    std::vector<Rgb> f(count + 1, beyond);
+    table.eval(wo, wi, std::span(f).first(count));
+    for (std::size_t k = 0; k < count; ++k) {
+      const Rgb expected = table.eval(wo, wi[k], rng);
+      for (int c = 0; c < 3; ++c)
+        ASSERT_NEAR(f[k][c], expected[c], 1e-5 * std::abs(expected[c]) + 1e-7) << wo.z << ' ' << wi[k].z;
+    }
+    EXPECT_EQ(f[count], beyond);
+    table.eval({wo.x, wo.y, -wo.z}, wi, std::span(f).first(count));
+    for (std::size_t k = 0; k < count; ++k) EXPECT_EQ(f[k], Rgb());
+  }
+}
+
 // Throughput is f cos / pdf of the whole; a Dirac's its weight over what the rest of the density leaves.
 TEST_P(FactoredConsistency, ThroughputIsEvalOverPdf) {
   const TableBsdf table = bsdf();

@@ -18,27 +18,28 @@ namespace {
 constexpr const char* kScene = SUNBEAM_SOURCE_DIR "/tables/scenes/sphere.toml";
 
 Material with_thickness(const SceneMaterial& skin, Material material) {
-  material.film_thickness_nm = skin.film_thickness_nm.value_or(material.film_thickness_nm);
+  if (skin.parameters[0]) material.film_thickness_nm = skin.parameters[0]->from;
   return material;
 }
 
-std::unique_ptr<Bsdf> in_rec709(std::unique_ptr<Bsdf> bsdf, const Table& table) {
-  return std::make_unique<ColorConvertedBsdf>(std::move(bsdf), table.color_space(), ColorSpace::rec709);
+template <class B>
+std::unique_ptr<Bsdf> in_rec709(B bsdf, const Table& table) {
+  return std::make_unique<ColorConvertedBsdf<B>>(std::move(bsdf), table.color_space(), ColorSpace::rec709);
 }
 
 RenderResult render_scene(const Scene& scene, const Table& table, bool live, std::uint64_t seed) {
   const Spectrum spectrum = parse_recipe(table.info.at("recipe"), "recipe").spectrum;
   std::vector<std::unique_ptr<Bsdf>> owned;
-  std::vector<const Bsdf*> bsdfs;
+  std::vector<SurfaceBsdf> bsdfs;
   for (const SceneMaterial& m : scene.materials) {
     const Material skin = with_thickness(m, table.material);
     if (m.type == SceneMaterial::Type::diffuse)
       owned.push_back(std::make_unique<Lambert>(m.albedo));
     else if (live)
-      owned.push_back(in_rec709(std::make_unique<LiveBsdf>(skin, spectrum.wavelengths(skin)), table));
+      owned.push_back(in_rec709(LiveBsdf(skin, spectrum.wavelengths(skin)), table));
     else
       owned.push_back(
-          in_rec709(std::make_unique<TableBsdf>(table, Parameters::of(skin), OutsideGrid::refuse), table));
+          in_rec709(TableBsdf(table, Parameters::of(skin), OutsideGrid::refuse), table));
     bsdfs.push_back(owned.back().get());
   }
   RenderSettings settings;

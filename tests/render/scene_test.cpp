@@ -81,7 +81,7 @@ TEST(Scene, ReadsEveryKey) {
   EXPECT_EQ(scene.point_lights[0].intensity, Rgb(1, 2, 3));
   ASSERT_EQ(scene.materials.size(), 2u);
   EXPECT_EQ(scene.materials[0].type, SceneMaterial::Type::skin);
-  EXPECT_EQ(scene.materials[0].film_thickness_nm, 300);
+  EXPECT_EQ(scene.materials[0].parameters_at({}).film_thickness_nm, 300);
   EXPECT_EQ(scene.materials[0].base_ior, std::nullopt);
   EXPECT_EQ(scene.materials[0].absorption_per_nm, 0.01);
   EXPECT_EQ(scene.materials[0].tangent_rotation_deg, 30);

@@ -86,7 +86,7 @@ class LambertWithMisPdf final : public Bsdf {
 };
 
 inline RenderResult render_with(const Scene& scene, const Bsdf& bsdf, const RenderSettings& settings) {
-  return render(scene, std::vector<const Bsdf*>(scene.materials.size(), &bsdf), settings);
+  return render(scene, std::vector<SurfaceBsdf>(scene.materials.size(), &bsdf), settings);
 }
 
 // Mean of all pixels and channels of a grey picture, and the standard error of that mean. Pixels are

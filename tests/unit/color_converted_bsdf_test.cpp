@@ -10,14 +10,14 @@ namespace {
 
 const Vec3 kOut = spherical_direction(0.3, 0), kIn = spherical_direction(0.8, 2);
 
-ColorConvertedBsdf converted(const Rgb& albedo) {
-  return ColorConvertedBsdf(std::make_unique<Lambert>(albedo), ColorSpace::acescg, ColorSpace::rec709);
+ColorConvertedBsdf<Lambert> converted(const Rgb& albedo) {
+  return {Lambert(albedo), ColorSpace::acescg, ColorSpace::rec709};
 }
 
 TEST(ColorConvertedBsdf, ConvertsValuesAndThroughputs) {
   const Rgb albedo(0.1, 0.8, 0.1), expected = rgb_to_rgb(ColorSpace::acescg, ColorSpace::rec709) * albedo;
   const Lambert plain(albedo);
-  const ColorConvertedBsdf bsdf = converted(albedo);
+  const auto bsdf = converted(albedo);
   Rng rng(1, 0), same(1, 0);
   EXPECT_LT(expected.r, 0);  // the sign is kept
   const auto sample = bsdf.sample(kOut, rng), original = plain.sample(kOut, same);
@@ -32,7 +32,7 @@ TEST(ColorConvertedBsdf, ConvertsValuesAndThroughputs) {
 TEST(ColorConvertedBsdf, KeepsGreysAndDensities) {
   Rng rng(1, 0);
   const Lambert plain(Rgb(0.4));
-  const ColorConvertedBsdf bsdf = converted(Rgb(0.4));
+  const auto bsdf = converted(Rgb(0.4));
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(bsdf.eval(kOut, kIn, rng)[c], 0.4 * kInvPi, 1e-14);
   EXPECT_EQ(bsdf.pdf(kOut, kIn, rng), plain.pdf(kOut, kIn, rng));
   EXPECT_EQ(bsdf.mis_pdf(kOut, kIn), plain.mis_pdf(kOut, kIn));

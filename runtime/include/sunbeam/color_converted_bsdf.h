@@ -4,7 +4,6 @@
 // directions stay as they are. Components keep their sign: a colour that `to` cannot show has a negative one.
 #pragma once
 
-#include <memory>
 #include <utility>
 
 #include "sunbeam/bsdf.h"
@@ -12,24 +11,27 @@
 
 namespace sunbeam {
 
+// `Inner` is a Bsdf, kept by value.
+template <class Inner>
 class ColorConvertedBsdf final : public Bsdf {
  public:
-  ColorConvertedBsdf(std::unique_ptr<const Bsdf> bsdf, ColorSpace from, ColorSpace to)
-      : bsdf_(std::move(bsdf)), matrix_(rgb_to_rgb(from, to)) {}
+  ColorConvertedBsdf(Inner bsdf, const ColorMatrix& matrix) : bsdf_(std::move(bsdf)), matrix_(matrix) {}
+  ColorConvertedBsdf(Inner bsdf, ColorSpace from, ColorSpace to)
+      : ColorConvertedBsdf(std::move(bsdf), rgb_to_rgb(from, to)) {}
 
   Rgb eval(const Vec3& wo, const Vec3& wi, Rng& rng) const override {
-    return matrix_ * bsdf_->eval(wo, wi, rng);
+    return matrix_ * bsdf_.eval(wo, wi, rng);
   }
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override {
-    auto sample = bsdf_->sample(wo, rng);
+    auto sample = bsdf_.sample(wo, rng);
     if (sample) sample->throughput = matrix_ * sample->throughput;
     return sample;
   }
-  double pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const override { return bsdf_->pdf(wo, wi, rng); }
-  double mis_pdf(const Vec3& wo, const Vec3& wi) const override { return bsdf_->mis_pdf(wo, wi); }
+  double pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const override { return bsdf_.pdf(wo, wi, rng); }
+  double mis_pdf(const Vec3& wo, const Vec3& wi) const override { return bsdf_.mis_pdf(wo, wi); }
 
  private:
-  std::unique_ptr<const Bsdf> bsdf_;
+  Inner bsdf_;
   ColorMatrix matrix_;
 };
 

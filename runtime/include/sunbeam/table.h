@@ -39,29 +39,11 @@
 #include "sunbeam/factors.h"
 #include "sunbeam/material.h"
 #include "sunbeam/nd_array.h"
+#include "sunbeam/parameters.h"
 
 namespace sunbeam {
 
 inline constexpr int kTableSchemaVersion = 2;
-
-// The three parameters a table can vary, in the order of its axes.
-inline constexpr std::array<const char*, 3> kParameterNames = {"film_thickness_nm", "base_ior",
-                                                               "absorption_per_nm"};
-
-struct Parameters {
-  double film_thickness_nm, base_ior, absorption_per_nm;
-
-  static Parameters of(const Material& material) {
-    return {material.film_thickness_nm, material.base_ior, material.absorption_per_nm};
-  }
-  Material applied_to(Material material) const {
-    material.film_thickness_nm = film_thickness_nm;
-    material.base_ior = base_ior;
-    material.absorption_per_nm = absorption_per_nm;
-    return material;
-  }
-  std::array<double, 3> values() const { return {film_thickness_nm, base_ior, absorption_per_nm}; }
-};
 
 // What the array `remainder` of a dense table stands in: see above.
 enum class FrameKind { closed, none };

@@ -17,7 +17,7 @@
 
 namespace sunbeam {
 
-struct BoundTable;
+class BoundTable;
 
 struct EvalPdf {
   Rgb f;       // 1/sr

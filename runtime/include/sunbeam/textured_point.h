@@ -9,26 +9,48 @@
 
 namespace sunbeam {
 
-// The frame of L in textured_table.h at one base and optical depth. Cosines are squared here.
-struct TexturedFrame {
-  TexturedFrame(const Material& material, double base_ior, double optical_depth);
+// What of L's frame and place one table has for all points. Cosines are squared here.
+struct TexturedMaterial {
+  explicit TexturedMaterial(const Material& material);
 
   // c~^2.
   float film_cosine_squared(float c) const { return film_scale * c * c + film_offset; }
+  // The path of light between reflections in a rough film, over that at normal incidence, as fringe_order()
+  // in factors.h has it; 1 for a smooth one.
+  float path_squared(float c) const { return std::max(path_scale * c * c + path_offset, least_path); }
+
+  // How the transmittance falls towards grazing, after Schlick: enough to take its pole from L.
+  static float passing(float film_cosine) {
+    const float x = 1 - film_cosine, x2 = x * x;
+    return 1 - x2 * x2 * x;
+  }
+
+  float film_scale, film_offset;
+  float path_scale, path_offset, least_path;
+  float least_below;  // of m~^2
+  bool bends;
+  double exterior_ior, pigment_thickness_nm;
+};
+
+// The frame of L at one base and optical depth.
+struct TexturedFrame {
+  TexturedFrame(const TexturedMaterial& material, double base_ior, double optical_depth);
+
   // m~^2.
   float pigment_cosine_squared(float c) const {
     return std::max(below_scale * c * c + below_offset, 0.0f) + least_below;
   }
 
-  float film_scale, film_offset;
   float below_scale, below_offset, least_below;  // the first two give the cosine below the film
   float optical_depth;
 };
 
 // Parameters among the nodes of L.
 struct TexturedPlace {
-  std::size_t row;              // the lowest of eight neighbours; cosines follow each other
-  std::array<float, 8> weight;  // of the neighbours: thickness is the highest bit, absorption the lowest
+  float thickness_nm;
+  std::size_t row;              // the lowest of four neighbours, at the first path and cosine
+  std::size_t nearest;          // of them
+  std::array<float, 4> weight;  // of the neighbours: base IOR is the higher bit, absorption the lower
 };
 
 }  // namespace sunbeam

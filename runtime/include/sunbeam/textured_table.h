@@ -10,14 +10,16 @@
 //
 //   rest = B(wi) B(wo),   B(w) = fold(g A* A(w)) / sqrt(fold(g A* A*)),   A* = Int A(w) cos dw.
 //
-// What has fringes and what decays stay in closed form; an array of L holds what is left,
+// What decays stays in closed form, and so do a smooth film's fringes; an array of L holds what is left,
 //
-//   B(w) = T(c~) exp(L - a tau / m~),   T = fold(1 - R),
+//   B(w) = P exp(L - a tau / m~),   P = fold(1 - R) at c for a smooth film, 1 - (1 - c~)^5 for a rough one,
 //
-// over (thickness, base IOR, absorption, cosine), all linear between nodes that are even in thickness and in
-// the roots of the others. c~ and m~, the cosines outside and below the film, are kept away from 0 by the
-// roughness; a is the mean absorption of the channel relative to that of the parameter. A fourth lane of L
-// is the chance of sampling the first surface.
+// over (path, base IOR, absorption, cosine), all linear between nodes that are even in the path and in the
+// roots of the others. The path is the thickness, for a rough film times the cosine in the film over that at
+// normal incidence: at a fixed path its fringes stand still. c~ and m~, the cosines outside and below the
+// film, are kept away from 0 by the roughness; a is the mean absorption of the channel relative to that of
+// the parameter. A fourth lane of L is the chance of sampling the first surface, taken at the nearest
+// parameters.
 //
 // sample mixes bounded visible normals (ggx.h; for a smooth film its mirror direction, a Dirac), and for the
 // rest two densities proportional to powers of cos(theta_i), which grow with the absorption. The choice
@@ -39,7 +41,7 @@ namespace sunbeam {
 
 struct FloatRgb;
 struct TexturedData;
-struct TexturedEnd;
+struct TexturedViewer;
 
 // Copies share the data. Const calls, those of At included, allocate nothing and lock nothing, and may run on
 // any number of threads.
@@ -69,7 +71,7 @@ class TexturedTable {
     friend class TexturedTable;
     At(const TexturedData& data, const Parameters& parameters);
     void fold(std::span<const float> cosines, FloatRgb* reflectance) const;
-    EvalPdf eval_pdf(const Vec3& wo, const TexturedEnd& o, const Vec3& wi) const;
+    EvalPdf eval_pdf(const TexturedViewer& viewer, const Vec3& wo, const Vec3& wi) const;
 
     const TexturedData* data_;
     Parameters parameters_;

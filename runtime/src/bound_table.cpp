@@ -1,0 +1,330 @@
+#include "bound_table.h"
+
+#include "sunbeam/core/text.h"
+#include "sunbeam/film_spectrum.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr int kFilmNodes = 1025;          // over even cosines
+constexpr int kViewerAzimuths = 4;        // of wo in a quadrant, which sampling data are averaged over
+constexpr int kNormalNodes = 96;          // quadrature over visible normals_, each way, for an albedo
+constexpr int kSamplingNormalNodes = 16;  // the same for the chance of sampling the first surface
+constexpr int kAlbedoBins = 32;
+constexpr int kRestAzimuths = 8;  // of an anisotropic factored table, in a quadrant
+constexpr int kRestRows = (RestSampler::kNodes - 1) / (FirstSampler::kRows - 1);  // for each of FirstSampler
+constexpr double kLeastCosine = 1e-4;                                             // of a node at grazing
+
+// The last coordinates of what EvenPositions count.
+constexpr float kLastScale = BoundRest::kScaleCosines - 1, kLastPair = RestSampler::kNodes - 1,
+                kLastFilm = kFilmNodes - 1;
+
+double cosine_of_root(double root) { return std::max(root * root, kLeastCosine); }
+
+// Mean of the rest over the azimuth of wi.
+class FactoredAzimuthMean {
+ public:
+  FactoredAzimuthMean(const BoundRest& rest, const Vec3& wo, Symmetry symmetry)
+      : rest_(rest), wo_(wo), azimuths_(symmetry == Symmetry::isotropic ? 1 : kRestAzimuths) {}
+  Rgb operator()(double cos_i) const {
+    Rgb sum;
+    for (int a = 0; a < azimuths_; ++a)
+      sum += to_rgb(rest_(wo_, direction_from_cosine(cos_i, kPi / 2 * (a + 0.5) / azimuths_)));
+    return sum / azimuths_;
+  }
+
+ private:
+  const BoundRest& rest_;
+  Vec3 wo_;
+  int azimuths_;
+};
+
+}  // namespace
+
+BoundTable::BoundTable(const Table& table, const Material& material)
+    : material_(material),
+      symmetry_(table.symmetry),
+      normals_(material.roughness),
+      facets_(material.roughness),
+      smooth_(material.is_smooth()) {
+  take_rest(table);
+  prepare_sampling();
+  prepare_pairs();
+}
+
+void BoundTable::take_rest(const Table& table) {
+  film_.resize(kFilmNodes + 1);
+  const auto cosine_of = [](int node) { return static_cast<double>(node) / (kFilmNodes - 1); };
+  if (!table.is_factored()) {
+    rest_.emplace<DenseRest>(table, material_);
+    for (int i = 0; i < kFilmNodes; ++i)
+      film_[i] = to_color4(table.film_reflectance.interpolate(
+          std::array{material_.film_thickness_nm, material_.base_ior, cosine_of(i)}));
+    return;
+  }
+  const FactoredRest factored(table, material_);
+  std::vector<float> cosines(kFilmNodes);
+  std::vector<FloatRgb> folded(kFilmNodes);
+  for (int i = 0; i < kFilmNodes; ++i) cosines[i] = static_cast<float>(cosine_of(i));
+  factored.film().fold(material_.film_thickness_nm, material_.base_ior, cosines, folded.data());
+  for (int i = 0; i < kFilmNodes; ++i) film_[i] = Color4{folded[i].r, folded[i].g, folded[i].b, 0};
+  const auto& bound = rest_.emplace<BoundRest>(factored, symmetry_);
+  if (bound.is_isotropic()) scales_ = bound.scales();
+  if (const auto known = table.info.find("noise"); known != table.info.end())
+    parse_number(known->second, noise_);
+}
+
+Rgb BoundTable::rest(const Vec3& wo, const Vec3& wi) const {
+  if (const auto* factored = std::get_if<BoundRest>(&rest_)) return to_rgb((*factored)(wo, wi));
+  return std::get<DenseRest>(rest_)(wo, wi);
+}
+
+Rgb BoundTable::rest_stderr(const Vec3& wo, const Vec3& wi) const {
+  if (const auto* dense = std::get_if<DenseRest>(&rest_)) return dense->standard_error(wo, wi);
+  return transform(rest(wo, wi), [&](double x) { return std::abs(x) * noise_; });
+}
+
+Rgb BoundTable::film_reflectance(double cosine) const {
+  return to_rgb(
+      lerp(film_.data(), EvenPosition(static_cast<float>(std::clamp(cosine, 0.0, 1.0)), kFilmNodes)));
+}
+
+// Int f_first cos dwi by midpoints in the unit square of visible normals, which turns it into a mean of R
+// G2/G1.
+Rgb BoundTable::first_albedo(const Vec3& wo, int nodes) const {
+  if (smooth_) return film_reflectance(wo.z);
+  Rgb sum;
+  for (int i = 0; i < nodes; ++i)
+    for (int j = 0; j < nodes; ++j) {
+      const double turn = kPi * (j + 0.5) / nodes;  // roots at both ends of the height become smooth
+      const Vec3 h = normals_.sample_visible(wo, {(i + 0.5) / nodes, (1 - std::cos(turn)) / 2});
+      const Vec3 wi = reflect(wo, h);
+      if (wi.z > 0)
+        sum += film_reflectance(dot(wo, h)) * (normals_.g2_over_g1(wo, wi) * kPi / 2 * std::sin(turn));
+    }
+  return sum / (nodes * nodes);
+}
+
+void BoundTable::visit_azimuth_mean(
+    const Vec3& wo, const std::function<void(const std::function<Rgb(double)>&)>& visit) const {
+  if (const auto* factored = std::get_if<BoundRest>(&rest_))
+    visit(FactoredAzimuthMean(*factored, wo, symmetry_));
+  else
+    visit(DenseRest::AzimuthMean(std::get<DenseRest>(rest_), wo));
+}
+
+Rgb BoundTable::albedo(const Vec3& wo) const { return first_albedo(wo, kNormalNodes) + rest_albedo(wo); }
+
+// Int f_rest cos dwi by four-point Gauss-Legendre in each bin of cos(theta_i).
+Rgb BoundTable::rest_albedo(const Vec3& wo) const {
+  constexpr double kNode[] = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
+  constexpr double kWeight[] = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
+                                0.1739274225687269};
+  Rgb total;
+  if (wo.z <= 0) return total;
+  visit_azimuth_mean(wo, [&](const auto& mean_rest) {
+    for (int bin = 0; bin < kAlbedoBins; ++bin)
+      for (int g = 0; g < 4; ++g) {
+        const double cos_i = (bin + kNode[g]) / kAlbedoBins;
+        total += mean_rest(cos_i) * (kWeight[g] * cos_i * 2 * kPi / kAlbedoBins);
+      }
+  });
+  return total;
+}
+
+// First and second moment over a cell, by midpoints, of f_first cos / density: R G2 / G1 times the bounded
+// cap's share of the whole.
+BoundTable::Moments BoundTable::first_moments(const Vec3& wo, std::size_t cell, int nodes) const {
+  Moments sum;
+  for (int k = 0; k < nodes * nodes; ++k) {
+    const double turn = static_cast<double>(cell / FirstSampler::kHeights) + (k % nodes + 0.5) / nodes;
+    const double height = static_cast<double>(cell % FirstSampler::kHeights) + (k / nodes + 0.5) / nodes;
+    const Vec3 wi =
+        normals_.sample_mirrored(wo, {turn / (2 * FirstSampler::kTurns), height / FirstSampler::kHeights});
+    sum.least_cosine = std::min(sum.least_cosine, wi.z);
+    if (wi.z <= 0) continue;
+    const Vec3 h = normalize(wo + wi);
+    const double weight = normals_.reflection(wo, wi, h) * wi.z / normals_.reflection_pdf_bounded(wo, h);
+    const double power = std::max(0.0, mean(film_reflectance(dot(wo, h)))) * weight / (nodes * nodes);
+    sum.first += power;
+    sum.second += power * power * (nodes * nodes);
+  }
+  return sum;
+}
+
+// Adds the viewer's row and returns the albedo. Cells are drawn by the root of their second moment, which
+// makes the variance least; near the horizon, where light rises steeply and ends, it takes more nodes.
+double BoundTable::add_first_row(const Vec3& wo) {
+  constexpr int kNodes = 1, kHorizonNodes = 4;
+  constexpr double kHorizon = 0.1;
+  constexpr double kLeastShare =
+      0.005;  // of the mean: neighbouring viewers may have light where this has none
+  std::vector<double> power(FirstSampler::kCells);
+  double albedo = 0;
+  for (std::size_t cell = 0; cell < power.size(); ++cell) {
+    Moments moments = first_moments(wo, cell, kNodes);
+    if (moments.least_cosine < kHorizon) moments = first_moments(wo, cell, kHorizonNodes);
+    power[cell] = std::sqrt(moments.second);
+    albedo += moments.first / FirstSampler::kCells;
+  }
+  for (double& p : power) p = std::max(p, kLeastShare * albedo);
+  first_sampler_.add_row(power);
+  return albedo;
+}
+
+// Densities follow the mean over channels, and over the viewer's azimuth.
+void BoundTable::prepare_sampling() {
+  const int azimuths = symmetry_ == Symmetry::anisotropic ? kViewerAzimuths : 1;
+  const auto viewer = [&](double root, int a) {
+    return direction_from_cosine(cosine_of_root(root), azimuths == 1 ? 0 : kPi / 2 * (a + 0.5) / azimuths);
+  };
+  std::vector<double> of_rest;
+  for (int row = 0; row < kPairs; ++row) {
+    std::vector<double> density(kPairs);
+    for (int a = 0; a < azimuths; ++a)
+      visit_azimuth_mean(viewer(RestSampler::root_of_node(row), a), [&](const auto& mean_rest) {
+        for (int node = 0; node < kPairs; ++node) {
+          const double root = RestSampler::root_of_node(node), cos_i = cosine_of_root(root);
+          // f cos dwi = f cos 2 pi dcos, dcos = 2 root droot.
+          density[static_cast<std::size_t>(node)] +=
+              std::max(0.0, mean(mean_rest(cos_i)) * cos_i * 4 * kPi * root) / azimuths;
+        }
+      });
+    of_rest.push_back(rest_sampler_.add_row(density));
+  }
+  std::vector<float> chances;
+  for (int row = 0; row < FirstSampler::kRows; ++row) {
+    const double root = static_cast<double>(row) / (FirstSampler::kRows - 1),
+                 rest = of_rest[static_cast<std::size_t>(row) * kRestRows];
+    double first = 0;
+    if (smooth_ || !has_cells())
+      for (int a = 0; a < azimuths; ++a)
+        first += std::max(0.0, mean(first_albedo(viewer(root, a), kSamplingNormalNodes))) / azimuths;
+    else
+      first = add_first_row(viewer(root, 0));
+    chances.push_back(static_cast<float>(first + rest > 0 ? first / (first + rest) : 0.5));
+  }
+  for (int k = 0; k < BoundRest::kScaleCosines; ++k) {
+    const float cosine = static_cast<float>(k) / (BoundRest::kScaleCosines - 1);
+    first_chance_.push_back(lerp(chances.data(), EvenPosition(std::sqrt(cosine), FirstSampler::kRows)));
+  }
+}
+
+void BoundTable::prepare_pairs() {
+  pairs_.resize((kPairs + 1) * kPairs + 1);
+  const auto* factored = std::get_if<BoundRest>(&rest_);
+  for (int o = 0; o < kPairs; ++o)
+    for (int i = 0; i < kPairs; ++i) {
+      Color4& node = pairs_[static_cast<std::size_t>(o * kPairs + i)];
+      if (!scales_.empty()) node = factored->ratio(o, i);
+      node[3] = rest_sampler_.density(o, i);
+    }
+}
+
+// The chance first, and without a root: sample() waits for it.
+inline BoundTable::Viewer::Viewer(const BoundTable& table, const Vec3& wo)
+    : cosine(std::min(static_cast<float>(wo.z), 1.0f), BoundRest::kScaleCosines),
+      first_chance(lerp(table.first_chance_.data(), cosine)),
+      facets(table.facets_, wo),
+      pairs(std::min(facets.root, 1.0f), kPairs),
+      rows(std::min(facets.root, 1.0f), FirstSampler::kRows) {}
+
+inline Color4 BoundTable::factored_rest(const Viewer& viewer, const EvenPositions& light,
+                                        const Color4& ratio) const {
+  return lerp(scales_.data(), viewer.cosine) * lerp(scales_.data(), {light, 0}) * ratio;
+}
+
+[[gnu::always_inline]] inline BoundTable::Parts BoundTable::parts(const Viewer& viewer, const Vec3& wo,
+                                                                  const Vec3& wi) const {
+  const FacetPair pair(facets_, viewer.facets, wo, wi);
+  const EvenPositions light(
+      Color4{pair.cosine * kLastScale, pair.root * kLastPair, pair.half_cosine * kLastFilm, 0},
+      Color4{kLastScale, kLastPair, kLastFilm, 0});
+  const Color4* row = pairs_.data() + viewer.pairs.lower * kPairs;
+  const Color4 low = lerp(row, {light, 1}), high = lerp(row + kPairs, {light, 1});
+  const Color4 ratio = low + viewer.pairs.upper_weight * (high - low);
+
+  constexpr float kPerSolidAngle = static_cast<float>(kInvPi / 4);  // d(root) / d(cosine) / (2 pi)
+  const float rest_pdf = (1 - viewer.first_chance) * ratio[3] * kPerSolidAngle * pair.per_root;
+  const Color4 rest = !scales_.empty() ? factored_rest(viewer, light, ratio) : to_color4(this->rest(wo, wi));
+  if (smooth_) return {Color4{}, rest, rest_pdf};
+  float first_pdf = pair.pdf;
+  if (has_cells()) first_pdf *= first_sampler_.density(viewer.rows, facets_.u, viewer.facets, pair);
+  return {pair.lobe * lerp(film_.data(), {light, 2}), rest, rest_pdf + viewer.first_chance * first_pdf};
+}
+
+BoundTable::Parts BoundTable::parts(const Vec3& wo, const Vec3& wi) const {
+  return parts(Viewer(*this, wo), wo, wi);
+}
+
+EvalPdf BoundTable::eval_pdf(const Vec3& wo, const Vec3& wi) const {
+  const Parts at = parts(Viewer(*this, wo), wo, wi);
+  return {to_rgb(at.first + at.rest), at.pdf};
+}
+
+// Draws from FirstSampler's square, or evenly.
+inline Vec3 BoundTable::draw_first(const Viewer& viewer, int row, const Vec3& wo, Rng& rng) const {
+  const auto at = has_cells() ? first_sampler_.sample(row, rng) : FirstSampler::even(rng);
+  return viewer.facets.mirrored(facets_, wo, at.turn, at.height);
+}
+
+inline Vec3 BoundTable::draw_rest(int row, Rng& rng) const {
+  const double root{rest_sampler_.sample(row, rng)};
+  return at_random_azimuth(root * root, rng);
+}
+
+// One number chooses the technique and, with what is left of it, the row.
+std::optional<BsdfSample> BoundTable::sample(const Vec3& wo, Rng& rng) const {
+  const Viewer viewer(*this, wo);
+  const float lot = uniform_float(rng), chance = viewer.first_chance;
+  Vec3 wi;
+  if (lot < chance) {
+    if (smooth_) return BsdfSample{{-wo.x, -wo.y, wo.z}, film_reflectance(wo.z) / double{chance}, true};
+    wi = draw_first(viewer, viewer.rows.lower + (lot < chance * viewer.rows.upper_weight), wo, rng);
+  } else {
+    wi = draw_rest(viewer.pairs.lower + (lot - chance < (1 - chance) * viewer.pairs.upper_weight), rng);
+  }
+  if (wi.z <= 0) return {};
+  const Parts at = parts(viewer, wo, wi);
+  if (at.pdf <= 0) return {};
+  return BsdfSample{wi, to_rgb(at.first + at.rest) * (wi.z / double{at.pdf}), false};
+}
+
+// parts() without what pdf needs, four lights at a time.
+void BoundTable::eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f) const {
+  if (scales_.empty()) {
+    for (std::size_t k = 0; k < wi.size(); ++k) f[k] = wi[k].z > 0 ? eval_pdf(wo, wi[k]).f : Rgb();
+    return;
+  }
+  const Viewer viewer(*this, wo);
+  std::array<Color4, kPairs + 1> ratios;  // of this viewer, with its scale
+  const Color4* row = pairs_.data() + viewer.pairs.lower * kPairs;
+  const Color4 scale = lerp(scales_.data(), viewer.cosine);
+  for (int i = 0; i < kPairs; ++i)
+    ratios[i] = scale * (row[i] + viewer.pairs.upper_weight * (row[i + kPairs] - row[i]));
+  ratios[kPairs] = Color4{};
+
+  const auto take_four = [&](const Vec3* four, Rgb* values) {
+    const FacetLights lights(facets_, viewer.facets, wo, four);
+    const Color4 one = {1, 1, 1, 1};
+    const EvenPositions at_scale(kLastScale * lights.cosine, kLastScale * one),
+        at_pair(kLastPair * lights.root, kLastPair * one),
+        at_film(kLastFilm * lights.half_cosine, kLastFilm * one);
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; ++k) {
+      Color4 value = lerp(scales_.data(), {at_scale, k}) * lerp(ratios.data(), {at_pair, k});
+      if (!smooth_) value += lights.lobe[k] * lerp(film_.data(), {at_film, k});
+      values[k] = lights.cosine[k] > 0 ? to_rgb(value) : Rgb();
+    }
+  };
+  const std::size_t left = wi.size() % 4, last = wi.size() - left;
+  for (std::size_t k = 0; k < last; k += 4) take_four(&wi[k], &f[k]);
+  if (left == 0) return;
+  std::array<Vec3, 4> four;
+  std::array<Rgb, 4> values;
+  std::copy_n(wi.begin() + static_cast<std::ptrdiff_t>(last), left, four.begin());
+  take_four(four.data(), values.data());
+  std::copy_n(values.begin(), left, f.begin() + static_cast<std::ptrdiff_t>(last));
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,94 @@
+// A table bound to one parameter point, behind TableBsdf: what is prepared, and how directions are looked up.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "bound_rest.h"
+#include "dense_rest.h"
+#include "facets.h"
+#include "first_sampler.h"
+#include "rest_sampler.h"
+#include "sunbeam/ggx.h"
+#include "sunbeam/table_bsdf.h"
+
+namespace sunbeam {
+
+class BoundTable {
+ public:
+  // `material` is that of the table with the parameters of the point, which lie in the grid.
+  BoundTable(const Table& table, const Material& material);
+
+  struct Parts {
+    Color4 first, rest;  // 1/sr
+    float pdf;
+  };
+  // All directions lie above the horizon, but for those of a span.
+  Parts parts(const Vec3& wo, const Vec3& wi) const;
+  EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi) const;
+  void eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f) const;
+  std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const;
+
+  Rgb rest(const Vec3& wo, const Vec3& wi) const;
+  Rgb rest_stderr(const Vec3& wo, const Vec3& wi) const;
+  Rgb film_reflectance(double cosine) const;
+  Rgb albedo(const Vec3& wo) const;
+
+  const Material& material() const { return material_; }
+  bool is_smooth() const { return smooth_; }
+
+ private:
+  // What the viewer decides, for any number of lights.
+  struct Viewer {
+    Viewer(const BoundTable& table, const Vec3& wo);
+
+    EvenPosition cosine;  // among scales and chances
+    float first_chance;
+    FacetViewer facets;
+    EvenPosition pairs, rows;  // in pairs_ and of first_sampler_
+  };
+
+  Parts parts(const Viewer& viewer, const Vec3& wo, const Vec3& wi) const;
+  Color4 factored_rest(const Viewer& viewer, const EvenPositions& light, const Color4& ratio) const;
+  Vec3 draw_first(const Viewer& viewer, int row, const Vec3& wo, Rng& rng) const;
+  Vec3 draw_rest(int row, Rng& rng) const;
+
+  void take_rest(const Table& table);
+  void prepare_sampling();
+  void prepare_pairs();
+  struct Moments {
+    double first = 0, second = 0;
+    double least_cosine = 1;  // of what is drawn
+  };
+  Moments first_moments(const Vec3& wo, std::size_t cell, int nodes) const;
+  double add_first_row(const Vec3& wo);
+  Rgb first_albedo(const Vec3& wo, int nodes) const;
+  Rgb rest_albedo(const Vec3& wo) const;
+  void visit_azimuth_mean(const Vec3& wo,
+                          const std::function<void(const std::function<Rgb(double)>&)>& visit) const;
+  bool has_cells() const { return facets_.u2 == facets_.v2; }
+
+  static constexpr int kPairs = RestSampler::kNodes;
+  static_assert(kPairs == BoundRest::kRatioCosines);
+
+  Material material_;
+  Symmetry symmetry_;
+  double noise_ = 0;  // relative standard error of a factored rest
+  Ggx normals_;
+  Facets facets_;
+  bool smooth_;
+  std::variant<std::monostate, DenseRest, BoundRest> rest_;
+  std::span<const Color4> scales_;  // of an isotropic factored rest, else empty
+  std::vector<Color4> film_;        // over even cosines
+  // (root of the viewer's cosine, root of the light's), both even: the ratio of an isotropic factored rest,
+  // and in the last lane RestSampler's density.
+  std::vector<Color4> pairs_;
+  RestSampler rest_sampler_;
+  FirstSampler first_sampler_;       // an isotropic rough film's
+  std::vector<float> first_chance_;  // over even cosines, as many as there are scales
+};
+
+}  // namespace sunbeam

@@ -56,11 +56,11 @@ std::vector<Vec3> tangents_of(const Mesh& mesh) {
   return mesh.normals.empty() ? triangle_tangents(mesh) : vertex_tangents(mesh);
 }
 
-bool needs_coordinates(const Scene& scene, int object) {
-  const int material = scene.objects[static_cast<std::size_t>(object)].material;
-  const SceneMaterial& description = scene.materials[static_cast<std::size_t>(material)];
-  return description.relief || description.varies();
+std::size_t material_of(const Scene& scene, int object) {
+  return static_cast<std::size_t>(scene.objects[static_cast<std::size_t>(object)].material);
 }
+
+bool needs_coordinates(const SceneMaterial& material) { return material.relief || material.varies(); }
 
 // --- spheres: Embree calls back, and the roots are found in double precision ---
 
@@ -218,14 +218,14 @@ struct EmbreeScene::Impl {
   Device device;
   SceneHandle scene;
 
-  void collect(const Scene& source);
+  void collect(const Scene& source, const std::function<bool(std::size_t)>& is_isotropic);
   void build();
   void require_no_error() const {
     if (!error.empty()) throw Error("Embree: " + error);
   }
 };
 
-void EmbreeScene::Impl::collect(const Scene& source) {
+void EmbreeScene::Impl::collect(const Scene& source, const std::function<bool(std::size_t)>& is_isotropic) {
   light_meshes.reserve(source.quad_lights.size());  // surfaces point into it
   for (const QuadLight& light : source.quad_lights) {
     light_meshes.push_back(quad_mesh(light.corner, light.edge_u, light.edge_v));
@@ -244,8 +244,10 @@ void EmbreeScene::Impl::collect(const Scene& source) {
   }
   for (Surface& surface : surfaces) {
     surface.offset = surface.sphere ? offset_of(*surface.sphere) : offset_of(*surface.mesh);
-    if (surface.mesh) surface.tangents = tangents_of(*surface.mesh);
-    surface.has_coordinates = surface.object >= 0 && needs_coordinates(source, surface.object);
+    if (surface.light >= 0) continue;
+    const std::size_t material = material_of(source, surface.object);
+    if (surface.mesh && !is_isotropic(material)) surface.tangents = tangents_of(*surface.mesh);
+    surface.has_coordinates = needs_coordinates(source.materials[material]);
     if (surface.mesh && surface.has_coordinates) surface.derivatives = vertex_derivatives(*surface.mesh);
   }
 }
@@ -274,8 +276,9 @@ void EmbreeScene::Impl::build() {
   require_no_error();
 }
 
-EmbreeScene::EmbreeScene(const Scene& scene) : impl_(std::make_unique<Impl>()) {
-  impl_->collect(scene);
+EmbreeScene::EmbreeScene(const Scene& scene, const std::function<bool(std::size_t)>& is_isotropic)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->collect(scene, is_isotropic);
   impl_->build();
 }
 

@@ -75,6 +75,8 @@ void require_outside(const EmbreeScene& geometry, const Vec3& position) {
       object + 1));
 }
 
+bool is_isotropic(const SurfaceBsdf& bsdf) { return bsdf.uniform && bsdf.uniform->is_isotropic(); }
+
 class Renderer {
  public:
   Renderer(const Scene& scene, std::span<const SurfaceBsdf> bsdfs, const RenderSettings& settings,
@@ -82,7 +84,7 @@ class Renderer {
       : settings_(settings),
         window_(window),
         start_(start),
-        geometry_(scene),
+        geometry_(scene, [&](std::size_t i) { return is_isotropic(bsdfs[i]); }),
         lights_(scene),
         tracer_(scene, geometry_, lights_, bsdfs),
         camera_(scene.camera, window.width, window.height),

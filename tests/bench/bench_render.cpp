@@ -254,9 +254,8 @@ constexpr double kFilm = 900, kBaseIor = 1, kAbsorption = 0.7;
 void set_skins(Scene& scene, double absorption) {
   for (SceneMaterial& material : scene.materials) {
     if (material.type != SceneMaterial::Type::skin) continue;
-    material.film_thickness_nm = kFilm;
-    material.base_ior = kBaseIor;
-    material.absorption_per_nm = absorption;
+    material.parameters = {ParameterField::of(kFilm), ParameterField::of(kBaseIor),
+                           ParameterField::of(absorption)};
   }
 }
 

@@ -37,6 +37,9 @@ class Bsdf {
   // The density to weight techniques with (MIS): deterministic and cheap. Equal to pdf() where that is exact,
   // else an approximation; any positive function keeps MIS unbiased.
   virtual double mis_pdf(const Vec3& wo, const Vec3& wi) const = 0;
+
+  // Whether turning wo and wi together about the normal changes nothing: any tangent serves.
+  virtual bool is_isotropic() const { return false; }
 };
 
 }  // namespace sunbeam

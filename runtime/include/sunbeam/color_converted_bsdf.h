@@ -29,6 +29,7 @@ class ColorConvertedBsdf final : public Bsdf {
   }
   double pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const override { return bsdf_.pdf(wo, wi, rng); }
   double mis_pdf(const Vec3& wo, const Vec3& wi) const override { return bsdf_.mis_pdf(wo, wi); }
+  bool is_isotropic() const override { return bsdf_.is_isotropic(); }
 
  private:
   Inner bsdf_;

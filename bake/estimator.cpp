@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "bake/live/exact_bsdf.h"
+#include "bake/live/slab_solver.h"
 #include "sunbeam/core/error.h"
 
 namespace sunbeam {
@@ -58,6 +59,11 @@ Estimator estimator_for_render(Estimator wanted, const Material& material) {
   if (wanted == Estimator::automatic) return automatic_for_render(material).estimator;
   if (wanted == Estimator::exact && !ExactBsdf::is_valid_for(material)) throw Error(obstacle(material));
   return wanted;
+}
+
+Estimator estimator_for_truth(Estimator wanted, const Material& material) {
+  if (wanted == Estimator::exact && SlabSolver::solves(material)) return wanted;
+  return estimator_for_eval(wanted, material);
 }
 
 }  // namespace sunbeam

@@ -48,9 +48,11 @@ EstimatorChoice automatic_for_eval(const Material& material);
 // For a renderer, which needs thousands of values a millisecond.
 EstimatorChoice automatic_for_render(const Material& material);
 
-// What `wanted` stands for. Both throw Error naming the key and what is allowed if it is exact and the
+// What `wanted` stands for. All throw Error naming the key and what is allowed if it is exact and the
 // material has no (fast) exact evaluator.
 Estimator estimator_for_eval(Estimator wanted, const Material& material);
 Estimator estimator_for_render(Estimator wanted, const Material& material);
+// Of a table's errors: exact also where adding and doubling solve the material (live/slab_solver.h).
+Estimator estimator_for_truth(Estimator wanted, const Material& material);
 
 }  // namespace sunbeam

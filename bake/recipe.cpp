@@ -58,12 +58,12 @@ Material read_material(const ConfigTable& config) {
 }
 
 // The axes without nodes. Their coordinates follow how the rest depends on a parameter: like the square root
-// of the base IOR's distance from index match, and ever more slowly with absorption; evenly with that of a
+// of the base IOR's distance from index match, and ever more slowly with absorption; less so with that of a
 // scattering pigment, whose remainder holds the decay itself.
 std::array<Axis, 3> bare_axes(const Material& material) {
   Axis thickness{kParameterNames[0], "nm", {}};
   Axis base_ior{kParameterNames[1], "1", {}, 2, 0, material.exterior_ior};
-  Axis absorption{kParameterNames[2], "1/nm", {}, material.scatters() ? 1.0 : 3.0};
+  Axis absorption{kParameterNames[2], "1/nm", {}, material.scatters() ? 2.0 : 3.0};
   return {thickness, base_ior, absorption};
 }
 
@@ -215,6 +215,8 @@ Recipe parse_recipe(const std::string& text, const std::string& name,
   recipe.table.frame = static_cast<FrameKind>(table.choice("frame", {"closed", "none"}, 0));
   if (recipe.table.frame == FrameKind::none && recipe.table.encoding != Encoding::dense)
     table.fail("frame", "found \"none\"; allowed with encoding \"dense\" only");
+
+  recipe.table.values = static_cast<TableValues>(table.choice("values", {"auto", "walks"}, 0));
 
   const ConfigTable accuracy = config.table("accuracy");
   recipe.accuracy.noise = accuracy.number("noise", {1e-4, 1}, recipe.accuracy.noise);

@@ -23,6 +23,10 @@ constexpr const char* name_of(Encoding encoding) {
   return kNames[static_cast<int>(encoding)];
 }
 
+// Where the nodes of a dense table come from. automatic: adding and doubling where it solves the material
+// (live/slab_solver.h), else walks.
+enum class TableValues { automatic, walks };
+
 struct Recipe {
   Material
       material;  // [material]: fixed values, and defaults of the grid's parameters; albedo as Spectrum has it
@@ -36,6 +40,7 @@ struct Recipe {
     Precision precision = Precision::half_float;
     Encoding encoding = Encoding::automatic;
     FrameKind frame = FrameKind::closed;  // dense only
+    TableValues values = TableValues::automatic;
   } table;
 
   struct {

@@ -5,12 +5,14 @@
 #include <atomic>
 #include <limits>
 #include <map>
+#include <set>
 #include <span>
 
 #include "bake/cell.h"
 #include "bake/factor_walks.h"
 #include "bake/film_tables.h"
 #include "bake/live/pfmc.h"
+#include "bake/live/slab_solver.h"
 #include "bake/parallel_tasks.h"
 #include "bake/version.h"
 #include "sunbeam/core/error.h"
@@ -186,6 +188,10 @@ class Orbits {
   std::vector<Cells> orbits_;
 };
 
+bool is_solved(const Recipe& recipe) {
+  return recipe.table.values == TableValues::automatic && SlabSolver::solves(recipe.material);
+}
+
 std::map<std::string, std::string> info_of(const Recipe& recipe, Encoding encoding, std::uint64_t seed,
                                            std::uint64_t walks, const char* estimator) {
   std::map<std::string, std::string> info{{"recipe", recipe.text},        {"recipe_hash", recipe.hash},
@@ -215,14 +221,58 @@ class Sweep {
   }
 
   Table run() {
-    run_parallel_tasks(nodes_, settings_.threads, settings_.on_progress,
-                       [&](std::size_t node) { bake_node(node); });
-    table_.info =
-        info_of(recipe_, Encoding::dense, settings_.seed, walks_, name_of(recipe_.accuracy.estimator));
+    if (is_solved(recipe_)) {
+      for (std::size_t ior = 0; ior < recipe_.grid[1].size(); ++ior) solve_nodes(ior);
+    } else {
+      run_parallel_tasks(nodes_, settings_.threads, settings_.on_progress,
+                         [&](std::size_t node) { bake_node(node); });
+    }
+    table_.info = info_of(recipe_, Encoding::dense, settings_.seed, walks_, dense_method(recipe_));
     return std::move(table_);
   }
 
  private:
+  // All nodes of one base IOR, without walks.
+  void solve_nodes(std::size_t ior) {
+    const std::vector<Axis>& grid = recipe_.grid;
+    Material material = recipe_.material;
+    material.base_ior = grid[1].nodes[ior];
+    SlabSolver solver(material, table_.remainder.axes()[3].nodes);
+    std::set<double> depths;
+    for (const double absorption : grid[2].nodes) {
+      material.absorption_per_nm = absorption;
+      for (const double relative : recipe_.spectrum.wavelengths(material).absorption)
+        depths.insert(material.optical_depth() * relative);
+    }
+    const std::vector<double> each(depths.begin(), depths.end());
+    run_parallel_tasks(each.size(), settings_.threads, {}, [&](std::size_t k) { solver.add_depth(each[k]); });
+    const auto progress = [&](double fraction) {
+      if (settings_.on_progress)
+        settings_.on_progress((static_cast<double>(ior) + fraction) / static_cast<double>(grid[1].size()));
+    };
+    run_parallel_tasks(grid[0].size(), settings_.threads, progress, [&](std::size_t thickness) {
+      solve_film(solver, (thickness * grid[1].size() + ior) * grid[2].size());
+    });
+  }
+
+  // The nodes of one film from `first_node` on.
+  void solve_film(const SlabSolver& solver, std::size_t first_node) {
+    const Material at_first = parameters_at(recipe_.grid, first_node).applied_to(recipe_.material);
+    const SlabSolver::Film film(solver, at_first.film_thickness_nm, recipe_.spectrum.wavelengths(at_first));
+    for (std::size_t node = first_node; node < first_node + recipe_.grid[2].size(); ++node) {
+      const Parameters parameters = parameters_at(recipe_.grid, node);
+      const Material material = parameters.applied_to(recipe_.material);
+      const auto rest = film.rest(material.optical_depth());
+      const auto& azimuths = table_.remainder.axes()[6].nodes;
+      std::vector<Row> rows(wi_.size());
+      for (std::size_t i = 0; i < wi_.size(); ++i)
+        for (std::size_t o = 0; o < wo_.size(); ++o)
+          rows[i].value.push_back(rest.at(o / azimuths.size(), i, azimuths[o % azimuths.size()]));
+      for (Row& row : rows) row.standard_error.resize(wo_.size());
+      finish(node, parameters, material, rows);
+    }
+  }
+
   void bake_node(std::size_t node) {
     const Parameters parameters = parameters_at(recipe_.grid, node);
     const Material material = parameters.applied_to(recipe_.material);
@@ -233,6 +283,11 @@ class Sweep {
                               recipe_.accuracy.noise, Rng(settings_.seed, node * wi_.size() + i)));
       walks_ += rows.back().estimates * model.walks_per_estimate();
     }
+    finish(node, parameters, material, rows);
+  }
+
+  void finish(std::size_t node, const Parameters& parameters, const Material& material,
+              std::vector<Row>& rows) {
     orbits_.average(rows);
     if (table_.frame == FrameKind::closed) frame(parameters, material, rows);
     store(node, rows);
@@ -311,6 +366,10 @@ std::vector<Encoding> encodings_of(const Recipe& recipe) {
   if (bytes_of(recipe, Encoding::factored) < bytes_of(recipe, Encoding::dense))
     return {Encoding::factored, Encoding::dense};
   return {Encoding::dense, Encoding::factored};
+}
+
+const char* dense_method(const Recipe& recipe) {
+  return is_solved(recipe) ? "adding-doubling" : name_of(recipe.accuracy.estimator);
 }
 
 void require_reasonable_size(const Recipe& recipe, Encoding encoding) {

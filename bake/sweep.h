@@ -19,6 +19,9 @@ struct SweepSettings {
 // What the recipe asks for, or what can hold its material, the smallest in memory first.
 std::vector<Encoding> encodings_of(const Recipe& recipe);
 
+// How the nodes of a dense table are found: its attribute `estimator`.
+const char* dense_method(const Recipe& recipe);
+
 // Throws Error if the table would be larger than a machine can be expected to hold.
 void require_reasonable_size(const Recipe& recipe, Encoding encoding);
 

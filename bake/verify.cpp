@@ -5,6 +5,7 @@
 #include "bake/cell.h"
 #include "bake/live/exact.h"
 #include "bake/live/pfmc.h"
+#include "bake/live/slab_solver.h"
 #include "bake/parallel_tasks.h"
 #include "sunbeam/table_bsdf.h"
 
@@ -13,9 +14,11 @@ namespace {
 
 constexpr std::size_t kDirections = 64;  // wo a point
 constexpr int kMostAttempts = 4096;      // to draw them
-constexpr int kFirstEstimates = 16;      // a live run; doubled until the expected floor is low enough
+constexpr int kFirstPilot = 16;  // estimates that tell how many a live run needs; doubled until it can
+constexpr int kPilotReach = 8;   // times as many
 constexpr int kBatches = 16;
-constexpr int kMostEstimates = 1 << 13;
+constexpr double kMostEstimates = 1 << 14;  // of a live run at a median tolerance of 1 %
+constexpr double kFloorMargin = 0.85;       // of the floor promised is aimed at
 
 double draw(const Axis& axis, Rng& rng) { return lerp(rng.uniform(), axis.low(), axis.high()); }
 
@@ -89,28 +92,51 @@ class PointCheck {
   }
 
  private:
-  // The number of walks follows the expected floor, not the floor itself: stopping at runs that happen to
-  // agree would report one that is too low.
+  // The number of walks follows the floor that a pilot expects, not that of the runs themselves: stopping at
+  // runs that happen to agree would report one that is too low.
   std::vector<Rgb> walked_rest() {
-    for (int estimates = kFirstEstimates;; estimates *= 2) {
-      const WalkedRest live =
-          walk_rest(*model_, technique_of(settings_.truth), wi_, directions_.wo, estimates, rng_);
-      const double scale = denominator(live.value);
-      if (weighted(live.expected_difference) / scale > settings_.tolerance_median / 3 &&
-          estimates < kMostEstimates)
-        continue;
-      auto difference =
-          walk_rest(*model_, technique_of(settings_.truth), wi_, directions_.wo, estimates, rng_).value;
-      for (std::size_t k = 0; k < difference.size(); ++k) difference[k] = live.value[k] - difference[k];
-      point_.noise_floor = weighted(difference) / scale;
-      return live.value;
+    const int estimates = estimates_needed();
+    const auto walk = [&](int count) {
+      return walk_rest(*model_, technique_of(settings_.truth), wi_, directions_.wo, count, rng_);
+    };
+    const std::vector<Rgb> live = walk(estimates).value;
+    auto difference = walk(estimates).value;
+    for (std::size_t k = 0; k < difference.size(); ++k) difference[k] = live[k] - difference[k];
+    point_.noise_floor = weighted(difference) / denominator(live);
+    return live;
+  }
+
+  int estimates_needed() {
+    const double most = kMostEstimates * square(0.01 / settings_.tolerance_median);
+    for (int pilot = kFirstPilot;; pilot *= 2) {
+      const WalkedRest rest =
+          walk_rest(*model_, technique_of(settings_.truth), wi_, directions_.wo, pilot, rng_);
+      const double floor = weighted(rest.expected_difference) / denominator(rest.value);
+      const double needed = pilot * square(floor / (kFloorMargin * settings_.tolerance_median / 3));
+      const double reach = std::min<double>(kPilotReach * pilot, most);
+      if (needed <= reach || reach == most)
+        return kBatches * static_cast<int>(std::ceil(std::clamp(needed, 1.0, most) / kBatches));
     }
   }
 
   std::vector<Rgb> exact_rest() const {
+    if (bsdf_->material().scatters()) return solved_rest();
     const ExactRest exact(bsdf_->material(), wavelengths_);
     std::vector<Rgb> live;
     for (const Vec3& wo : directions_.wo) live.push_back(exact.rest(wo, wi_));
+    return live;
+  }
+
+  std::vector<Rgb> solved_rest() const {
+    std::vector<double> cosines{wi_.z};
+    for (const Vec3& wo : directions_.wo) cosines.push_back(wo.z);
+    SlabSolver solver(bsdf_->material(), cosines);
+    const double depth = bsdf_->material().optical_depth();
+    for (const double relative : wavelengths_.absorption) solver.add_depth(depth * relative);
+    const auto rest = SlabSolver::Film(solver, point_.parameters.film_thickness_nm, wavelengths_).rest(depth);
+    std::vector<Rgb> live;
+    for (std::size_t k = 0; k < directions_.wo.size(); ++k)
+      live.push_back(rest.at(k + 1, 0, azimuth(directions_.wo[k]) - point_.phi_i));
     return live;
   }
 
@@ -179,13 +205,14 @@ double quantile(std::vector<double> values, double q) {
 
 Estimator default_truth(const Recipe& recipe) {
   constexpr double kFinestByWalks = 0.005;  // finer, PFMC would take hours to show
-  if (recipe.material.is_plain() && recipe.accuracy.tolerance_median < kFinestByWalks)
+  if ((recipe.material.is_plain() || SlabSolver::solves(recipe.material)) &&
+      recipe.accuracy.tolerance_median < kFinestByWalks)
     return Estimator::exact;
   return recipe.material.scatters() ? recipe.accuracy.estimator : Estimator::pfmc;
 }
 
 VerifyReport verify(const Table& table, const VerifySettings& settings) {
-  estimator_for_eval(settings.truth, table.material);  // throws if it has none
+  estimator_for_truth(settings.truth, table.material);  // throws if it has none
   const Spectrum spectrum = parse_recipe(table.info.at("recipe"), "recipe of the table").spectrum;
   VerifyReport report;
   report.truth = name_of(settings.truth);

@@ -5,8 +5,8 @@
 //     Int |f_table - f_live| cos_o dwo / max(Int |f_live| cos_o dwo, 0.002),   f = first (non-Dirac) + rest,
 // mean over channels of the folded colour, by importance sampling with the table's own density. The live
 // values are noisy, which biases an L1 error upwards; noise_floor is the same figure with the table replaced
-// by a second, independent live run of equal cost. Each point spends walks until it may expect a floor of a
-// third of the median tolerance.
+// by a second, independent live run of equal cost. Each point spends as many walks as a pilot says a floor of
+// a third of the median tolerance takes.
 #pragma once
 
 #include <cstdint>

@@ -39,8 +39,7 @@ void announce(const BakeOptions& options, const Recipe& recipe, Encoding encodin
   }
   fmt::print(stderr, "{}: dense, {} parameter nodes, {} x {} cosines, {} azimuths, values by {}\n",
              options.recipe, recipe.grid[0].size() * recipe.grid[1].size() * recipe.grid[2].size(),
-             recipe.table.angles, recipe.table.angles, recipe.table.azimuths,
-             name_of(recipe.accuracy.estimator));
+             recipe.table.angles, recipe.table.angles, recipe.table.azimuths, dense_method(recipe));
 }
 
 Table bake_and_measure(const BakeOptions& options, const Recipe& recipe) {

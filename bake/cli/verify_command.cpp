@@ -76,7 +76,7 @@ void write_html(const VerifyOptions& options, const Table& table, const Recipe& 
 Estimator truth_of(const VerifyOptions& options, const Recipe& recipe) {
   if (options.truth.empty()) return default_truth(recipe);
   try {
-    return estimator_for_eval(estimator_of(options.truth), recipe.material);
+    return estimator_for_truth(estimator_of(options.truth), recipe.material);
   } catch (const Error& error) {
     throw Error(options.table + ": " + error.what());
   }

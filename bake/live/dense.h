@@ -15,14 +15,17 @@ using Vector = std::vector<double>;
 class Matrix {
  public:
   Matrix() = default;
-  explicit Matrix(int size) : size_(size), values_(static_cast<std::size_t>(size) * size) {}
+  explicit Matrix(int size) : Matrix(size, size) {}
+  Matrix(int rows, int columns)
+      : rows_(rows), columns_(columns), values_(static_cast<std::size_t>(rows) * columns) {}
 
-  int size() const { return size_; }
-  double* row(int i) { return values_.data() + static_cast<std::size_t>(i) * size_; }
-  const double* row(int i) const { return values_.data() + static_cast<std::size_t>(i) * size_; }
+  int size() const { return rows_; }  // rows; of a square matrix also columns
+  int columns() const { return columns_; }
+  double* row(int i) { return values_.data() + static_cast<std::size_t>(i) * columns_; }
+  const double* row(int i) const { return values_.data() + static_cast<std::size_t>(i) * columns_; }
 
  private:
-  int size_ = 0;
+  int rows_ = 0, columns_ = 0;
   Vector values_;
 };
 
@@ -39,18 +42,27 @@ inline double dot(const Vector& a, const Vector& b) {
 
 // x^T a; for a symmetric matrix also a x.
 inline Vector multiply(const Vector& x, const Matrix& a) {
-  Vector y(x.size());
+  Vector y(a.columns());
   for (int i = 0; i < a.size(); ++i)
-    if (x[i] != 0) add_scaled(x[i], a.row(i), a.size(), y.data());
+    if (x[i] != 0) add_scaled(x[i], a.row(i), a.columns(), y.data());
   return y;
 }
 
 inline Matrix multiply(const Matrix& a, const Matrix& b) {
-  Matrix c(a.size());
+  Matrix c(a.size(), b.columns());
   for (int i = 0; i < a.size(); ++i)
-    for (int k = 0; k < a.size(); ++k)
-      if (a.row(i)[k] != 0) add_scaled(a.row(i)[k], b.row(k), a.size(), c.row(i));
+    for (int k = 0; k < a.columns(); ++k)
+      if (a.row(i)[k] != 0) add_scaled(a.row(i)[k], b.row(k), b.columns(), c.row(i));
   return c;
+}
+
+// 1 - a.
+inline Matrix one_minus(Matrix a) {
+  for (int i = 0; i < a.size(); ++i) {
+    for (int j = 0; j < a.size(); ++j) a.row(i)[j] = -a.row(i)[j];
+    a.row(i)[i] += 1;
+  }
+  return a;
 }
 
 // (a + a^T) / 2.
@@ -61,23 +73,23 @@ inline void symmetrise(Matrix& a) {
 
 // x with a x = b: Gauss elimination with row pivoting.
 inline Matrix solve(Matrix a, Matrix b) {
-  const int n = a.size();
+  const int n = a.size(), columns = b.columns();
   for (int k = 0; k < n; ++k) {
     int pivot = k;
     for (int i = k + 1; i < n; ++i)
       if (std::abs(a.row(i)[k]) > std::abs(a.row(pivot)[k])) pivot = i;
     std::swap_ranges(a.row(k), a.row(k) + (pivot == k ? 0 : n), a.row(pivot));
-    std::swap_ranges(b.row(k), b.row(k) + (pivot == k ? 0 : n), b.row(pivot));
+    std::swap_ranges(b.row(k), b.row(k) + (pivot == k ? 0 : columns), b.row(pivot));
     for (int i = k + 1; i < n; ++i) {
       const double factor = -a.row(i)[k] / a.row(k)[k];
       if (factor == 0) continue;
       add_scaled(factor, a.row(k) + k, n - k, a.row(i) + k);
-      add_scaled(factor, b.row(k), n, b.row(i));
+      add_scaled(factor, b.row(k), columns, b.row(i));
     }
   }
   for (int k = n - 1; k >= 0; --k) {
-    for (int i = k + 1; i < n; ++i) add_scaled(-a.row(k)[i], b.row(i), n, b.row(k));
-    for (int j = 0; j < n; ++j) b.row(k)[j] /= a.row(k)[k];
+    for (int i = k + 1; i < n; ++i) add_scaled(-a.row(k)[i], b.row(i), columns, b.row(k));
+    for (int j = 0; j < columns; ++j) b.row(k)[j] /= a.row(k)[k];
   }
   return b;
 }

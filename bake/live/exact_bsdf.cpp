@@ -170,7 +170,7 @@ std::optional<BsdfSample> ExactBsdf::sample(const Vec3& wo, Rng& rng) const {
   const double chance = first_chance(wo.z);
   Vec3 wi, h;
   if (rng.uniform() < chance) {
-    if (smooth_) return BsdfSample{{-wo.x, -wo.y, wo.z}, reflectance(wo.z) / chance, true};
+    if (smooth_) return BsdfSample{{-wo.x, -wo.y, wo.z}, reflectance(wo.z) / chance, true, 0};
     h = ggx_.sample_visible(wo, {rng.uniform(), rng.uniform()});
     wi = reflect(wo, h);
     if (wi.z <= 0) return {};
@@ -181,7 +181,7 @@ std::optional<BsdfSample> ExactBsdf::sample(const Vec3& wo, Rng& rng) const {
   }
   const double density = density_at(wo, wi, h);
   if (density <= 0) return {};
-  return BsdfSample{wi, (first_at(wo, wi, h) + rest(wo, wi)) * (wi.z / density), false};
+  return BsdfSample{wi, (first_at(wo, wi, h) + rest(wo, wi)) * (wi.z / density), false, density};
 }
 
 double ExactBsdf::mis_pdf(const Vec3& wo, const Vec3& wi) const {

@@ -47,7 +47,9 @@ Rgb LiveBsdf::eval(const Vec3& wo, const Vec3& wi, Rng& rng) const {
 }
 
 std::optional<BsdfSample> LiveBsdf::sample(const Vec3& wo, Rng& rng) const {
-  return with_heroes(rng, [&](const Pfmc& model) { return pfmc_.sample(wo, rng, model); });
+  auto sample = with_heroes(rng, [&](const Pfmc& model) { return pfmc_.sample(wo, rng, model); });
+  if (sample && !sample->is_dirac) sample->mis_pdf = mis_pdf(wo, sample->wi);
+  return sample;
 }
 
 double LiveBsdf::pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const {

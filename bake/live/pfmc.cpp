@@ -184,8 +184,9 @@ std::optional<BsdfSample> Pfmc::sample_stack(const Vec3& wo, Rng& rng, const Pfm
   Powers power;
   const walk::StackSample s = below.stack(walk::Carrying::power).sample(wo, power, rng);
   if (s.is_lost) return {};
-  if (s.is_first) return BsdfSample{s.wi, film_reflectance(s.facet_cosine) * s.weight, layers_.is_smooth()};
-  return BsdfSample{s.wi, below.fold(power.data()), false};
+  if (s.is_first)
+    return BsdfSample{s.wi, film_reflectance(s.facet_cosine) * s.weight, layers_.is_smooth(), 0};
+  return BsdfSample{s.wi, below.fold(power.data()), false, 0};
 }
 
 // Reciprocity of the chances turns leaving along wi into entering there, as for powers.
@@ -210,7 +211,7 @@ std::optional<BsdfSample> Pfmc::sample(const Vec3& wo, Rng& rng, const Pfmc& bel
     const auto up = events.mirror(wo.z, facet);
     if (up.weight == 0) return {};
     return BsdfSample{reflect(wo, facet_normal(wo, facet, rng)),
-                      fold(power.data()) * (up.weight / reflect_chance), layers_.is_smooth()};
+                      fold(power.data()) * (up.weight / reflect_chance), layers_.is_smooth(), 0};
   }
   const auto passage = events.cross(wo.z, facet, layers_.index_ratio);
   if (passage.weight == 0) return {};
@@ -237,7 +238,7 @@ std::optional<BsdfSample> Pfmc::sample_below(double cosine, Powers& throughput, 
       if (out.weight == 0) return {};
       const double share = out.weight / (1 - reflect_chance);
       for (int k = 0; k < layers_.count; ++k) throughput[k] *= (1 - power[k]) * share;
-      return BsdfSample{any_azimuth(out.cosine, rng), fold(throughput.data()), false};
+      return BsdfSample{any_azimuth(out.cosine, rng), fold(throughput.data()), false, 0};
     }
     const auto down = events.mirror(up.cosine, facet);
     if (down.weight == 0) return {};

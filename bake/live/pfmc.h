@@ -67,7 +67,7 @@ class Pfmc {
   // One walk (a single one), the throughput its own: its mean at a given wi is f cos / pdf. At the upper
   // surface it chooses by the film's reflectance and by what entering is worth over this base, below like the
   // film does. Empty if lost in the microsurface. What enters the film is carried on by `below`, the same
-  // model at other wavelengths.
+  // model at other wavelengths. Its mis_pdf is left at 0.
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng, const Pfmc& below) const;
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const { return sample(wo, rng, *this); }
 

@@ -279,7 +279,7 @@ std::optional<BsdfSample> BoundTable::sample(const Vec3& wo, Rng& rng) const {
   const float lot = uniform_float(rng), chance = viewer.first_chance;
   Vec3 wi;
   if (lot < chance) {
-    if (smooth_) return BsdfSample{{-wo.x, -wo.y, wo.z}, film_reflectance(wo.z) / double{chance}, true};
+    if (smooth_) return BsdfSample{{-wo.x, -wo.y, wo.z}, film_reflectance(wo.z) / double{chance}, true, 0};
     wi = draw_first(viewer, viewer.rows.lower + (lot < chance * viewer.rows.upper_weight), wo, rng);
   } else {
     wi = draw_rest(viewer.pairs.lower + (lot - chance < (1 - chance) * viewer.pairs.upper_weight), rng);
@@ -287,7 +287,7 @@ std::optional<BsdfSample> BoundTable::sample(const Vec3& wo, Rng& rng) const {
   if (wi.z <= 0) return {};
   const Parts at = parts(viewer, wo, wi);
   if (at.pdf <= 0) return {};
-  return BsdfSample{wi, to_rgb(at.first + at.rest) * (wi.z / double{at.pdf}), false};
+  return BsdfSample{wi, to_rgb(at.first + at.rest) * (wi.z / double{at.pdf}), false, double{at.pdf}};
 }
 
 // parts() without what pdf needs, four lights at a time.

@@ -167,7 +167,7 @@ std::optional<BsdfSample> TexturedTable::At::sample(const Vec3& wo, Rng& rng) co
   const double chance{viewer.first_chance};
   Vec3 wi;
   if (rng.uniform() < chance) {
-    if (data.smooth) return BsdfSample{{-wo.x, -wo.y, wo.z}, dirac(wo) / chance, true};
+    if (data.smooth) return BsdfSample{{-wo.x, -wo.y, wo.z}, dirac(wo) / chance, true, 0};
     const float turn = uniform_float(rng);
     wi = viewer.facets.mirrored(data.facets, wo, turn, uniform_float(rng));
   } else {
@@ -176,7 +176,7 @@ std::optional<BsdfSample> TexturedTable::At::sample(const Vec3& wo, Rng& rng) co
   if (wi.z <= 0) return {};
   const EvalPdf at = eval_pdf(viewer, wo, wi);
   if (at.pdf <= 0) return {};
-  return BsdfSample{wi, at.f * (wi.z / at.pdf), false};
+  return BsdfSample{wi, at.f * (wi.z / at.pdf), false, at.pdf};
 }
 
 }  // namespace sunbeam

@@ -113,13 +113,12 @@ Rgb PathTracer::direct_light(const Vertex& vertex, Rng& rng, PathCounts& counts)
   if (wi.z <= 0) return {};
   const double shadowing = vertex.shadowing(light->wi);
   if (shadowing == 0) return {};
-  const Rgb f = vertex.bsdf->eval(vertex.wo, wi, rng) * shadowing;
-  if (is_black(f)) return {};
+  const EvalPdf value = vertex.bsdf->eval_pdf(vertex.wo, wi, rng);
+  if (is_black(value.f)) return {};
   ++counts.rays;
   if (geometry_.occluded(vertex.leave(light->wi), light->distance)) return {};
-  const double weight =
-      light->is_dirac ? 1 : power_heuristic(light->pdf, vertex.bsdf->mis_pdf(vertex.wo, wi));
-  return f * light->radiance * (wi.z * weight / light->pdf);
+  const double weight = light->is_dirac ? 1 : power_heuristic(light->pdf, value.pdf);
+  return value.f * light->radiance * (wi.z * weight * shadowing / light->pdf);
 }
 
 Rgb PathTracer::radiance(Ray ray, Rng& rng, PathCounts& counts, FirstHit& first) const {
@@ -154,7 +153,7 @@ Rgb PathTracer::radiance(Ray ray, Rng& rng, PathCounts& counts, FirstHit& first)
       if (rng.uniform() >= survival) return result;
       throughput *= 1 / survival;
     }
-    bsdf_pdf = sample->is_dirac ? std::nullopt : std::optional(vertex.bsdf->mis_pdf(vertex.wo, sample->wi));
+    bsdf_pdf = sample->is_dirac ? std::nullopt : std::optional(sample->mis_pdf);
     ray = vertex.leave(wi);
   }
 }

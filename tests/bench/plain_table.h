@@ -14,7 +14,7 @@ class PlainTable : public Bsdf {
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override {
     if (wo.z <= 0) return {};
     const Vec3 wi = sample_cosine({rng.uniform(), rng.uniform()});
-    return BsdfSample{wi, kPi * eval(wo, wi, rng), false};
+    return BsdfSample{wi, kPi * eval(wo, wi, rng), false, cosine_pdf(wi.z)};
   }
   double pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return mis_pdf(wo, wi); }
   double mis_pdf(const Vec3& wo, const Vec3& wi) const override { return wo.z > 0 ? cosine_pdf(wi.z) : 0; }

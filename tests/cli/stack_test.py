@@ -86,8 +86,10 @@ class Stack(support.CliTest):
         needles = {"anisotropic": "'roughness'", "factored": "'roughness'", "scattering": "'scattering_per_nm'",
                    "multiple": "'microfacet'"}
         for name, needle in needles.items():
-            for command in (("eval", f"{name}.toml", "--points", "-", "--estimator", "exact"),
-                            ("verify", f"{name}.exr", "--truth", "exact")):
+            commands = [("eval", f"{name}.toml", "--points", "-", "--estimator", "exact")]
+            if name != "scattering":  # solved by adding and doubling
+                commands.append(("verify", f"{name}.exr", "--truth", "exact"))
+            for command in commands:
                 result = self.sunbeam(*command, stdin=POINTS)
                 self.check_refusal(result, needle, "exact evaluator allows")
             self.assertIn(needle, self.succeed("info", f"{name}.toml").out)

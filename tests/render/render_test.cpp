@@ -51,7 +51,7 @@ class Broken final : public Bsdf {
   Rgb eval(const Vec3&, const Vec3&, Rng&) const override { return {}; }
   std::optional<BsdfSample> sample(const Vec3&, Rng&) const override {
     if (throws_) throw std::domain_error("broken BSDF");
-    return BsdfSample{{0, 0, 1}, Rgb(std::numeric_limits<double>::quiet_NaN()), false};
+    return BsdfSample{{0, 0, 1}, Rgb(std::numeric_limits<double>::quiet_NaN()), false, 0};
   }
   double pdf(const Vec3&, const Vec3&, Rng&) const override { return 0; }
   double mis_pdf(const Vec3&, const Vec3&) const override { return 0; }
@@ -257,6 +257,55 @@ material = "m"
     }
 }
 
+// A plane whose thickness rises with u, read back through the BSDF and the layer.
+class GreyByThickness final : public VaryingBsdf {
+ public:
+  const Bsdf& at(const Parameters& parameters, BsdfRoom& room) const override {
+    const Rgb albedo(parameters.film_thickness_nm / 1000);
+    if (parameters.base_ior == 2) return room.adopt(std::make_unique<Lambert>(albedo));
+    return room.emplace<Lambert>(albedo);
+  }
+};
+
+TEST(Render, VaryingParametersReachTheBsdf) {
+  for (const double base_ior : {1, 2}) {
+    Scene scene = scene_from(R"(
+[camera]
+position = [0, 0, 2]
+look_at = [0, 0, 0]
+up = [0, 1, 0]
+fov_deg = 53.13010235415598
+[render]
+width = 8
+height = 8
+spp = 16
+max_bounces = 1
+[environment]
+color = 1
+[[material]]
+name = "m"
+type = "skin"
+film_thickness_nm = {from = 0, to = 1000, ramp = [1, 0]}
+[[object]]
+type = "plane"
+half_size = 1
+material = "m"
+)");
+    scene.materials[0].parameters[1] = ParameterField::of(base_ior);
+    const GreyByThickness grey;
+    const RenderResult result = render(scene, std::vector<SurfaceBsdf>{&grey}, {.first_hits = true});
+    double low = 1, high = 0;
+    for (int i = 0; i < 64; ++i) {
+      const double value = result.mean.get(i % 8, i / 8).r;
+      EXPECT_NEAR(result.first_hits->film_thickness_nm[static_cast<std::size_t>(i)], 1000 * value, 0.01);
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    EXPECT_NEAR(low, 1.0 / 16, 0.02);  // u is 0 to 1 across the picture
+    EXPECT_NEAR(high, 15.0 / 16, 0.02);
+  }
+}
+
 TEST(Render, CameraInsideAnObjectIsRefusedUnlessWanted) {
   Scene scene = small_scene();
   scene.objects.push_back({Sphere{scene.camera.position, 0.1}, 0});
@@ -276,7 +325,7 @@ TEST(Render, BadSettingsAreRefused) {
             "render settings: threads: found -2; allowed: 0 to 4096");
   EXPECT_EQ(error_of([&] { render(scene, {}, {}); }),
             "render: found 0 BSDFs; allowed: one for each of 1 materials");
-  EXPECT_EQ(error_of([&] { render(scene, std::vector<const Bsdf*>{nullptr}, {}); }),
+  EXPECT_EQ(error_of([&] { render(scene, std::vector<SurfaceBsdf>{static_cast<const Bsdf*>(nullptr)}, {}); }),
             "render: material \"grey\" has no BSDF");
 }
 

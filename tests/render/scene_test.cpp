@@ -82,8 +82,9 @@ TEST(Scene, ReadsEveryKey) {
   ASSERT_EQ(scene.materials.size(), 2u);
   EXPECT_EQ(scene.materials[0].type, SceneMaterial::Type::skin);
   EXPECT_EQ(scene.materials[0].parameters_at({}).film_thickness_nm, 300);
-  EXPECT_EQ(scene.materials[0].base_ior, std::nullopt);
-  EXPECT_EQ(scene.materials[0].absorption_per_nm, 0.01);
+  EXPECT_FALSE(scene.materials[0].parameters[1]);
+  EXPECT_EQ(scene.materials[0].parameters_at({}).absorption_per_nm, 0.01);
+  EXPECT_FALSE(scene.materials[0].varies());
   EXPECT_EQ(scene.materials[0].tangent_rotation_deg, 30);
   EXPECT_EQ(scene.materials[1].albedo, Rgb(0.25));
   ASSERT_EQ(scene.objects.size(), 2u);
@@ -294,6 +295,51 @@ INSTANTIATE_TEST_SUITE_P(
                  kCamera + kMaterial + kSphere + "[environment]\ncolor = 1\nfile = 'sky.exr'\n",
                  "key 'environment.color': found more than one of color, file and sky"}),
     [](const auto& info) { return std::string(info.param.name); });
+
+SceneMaterial varying_skin(const std::string& thickness) {
+  return scene_from(kCamera + kSphere + "[[material]]\nname = 'grey'\ntype = 'skin'\nfilm_thickness_nm = {" +
+                    thickness + "}\n")
+      .materials[0];
+}
+
+TEST(Scene, ParametersVaryOverTheSurface) {
+  const auto at = [](const SceneMaterial& skin, double u, double v) {
+    return skin.parameters_at({u, v}).film_thickness_nm;
+  };
+  const SceneMaterial ramp = varying_skin("from = 200, to = 400, ramp = [0.5, 0]");
+  EXPECT_TRUE(ramp.varies());
+  EXPECT_DOUBLE_EQ(at(ramp, 1, 7), 300);
+  EXPECT_DOUBLE_EQ(at(ramp, 5, 0), 400);  // held
+  const SceneMaterial bands = varying_skin("from = 400, to = 200, bands = [0, 3]");
+  EXPECT_NEAR(at(bands, 0.3, 1.0 / 3), 400, 1e-9);
+  EXPECT_NEAR(at(bands, 0.3, 0.5), 200, 1e-9);
+  EXPECT_EQ(bands.parameters[0]->bounds(), std::pair(200.0, 400.0));
+  const SceneMaterial noise = varying_skin("from = 200, to = 400, noise = {cells = 3}, tiles = [2, 1]");
+  double low = 1000, high = 0;
+  for (int i = 0; i < 4096; ++i) {
+    const double u = (i % 64) / 64.0, v = (i / 64) / 64.0, value = at(noise, u, v);
+    EXPECT_NEAR(value, at(noise, u + 0.5, v - 1), 1e-9);  // repeats
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  EXPECT_GE(low, 200);
+  EXPECT_LT(low, 250);
+  EXPECT_GT(high, 350);
+  EXPECT_LE(high, 400);
+}
+
+TEST(Scene, BadFieldsAreRefused) {
+  EXPECT_NE(error_of([] {
+              varying_skin("from = 200, to = 400");
+            }).find("exactly one of ramp, bands, noise and file"),
+            std::string::npos);
+  EXPECT_NE(error_of([] { varying_skin("from = 200, to = -1, ramp = [1, 0]"); }).find("film_thickness_nm.to"),
+            std::string::npos);
+  EXPECT_NE(error_of([] { varying_skin("from = 200, to = 400, bands = [1]"); }).find("allowed: 2"),
+            std::string::npos);
+  EXPECT_NE(error_of([] { varying_skin("from = 200, to = 400, file = 'missing.png'"); }).find("missing.png"),
+            std::string::npos);
+}
 
 TEST(Scene, SkyBringsItsSun) {
   const std::string sky = kCamera + kMaterial + kSphere + "[environment]\nsky = {sun_direction = [1, 0, 2]";

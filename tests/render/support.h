@@ -60,7 +60,7 @@ class Mirror final : public Bsdf {
   explicit Mirror(double albedo) : albedo_(albedo) {}
   Rgb eval(const Vec3&, const Vec3&, Rng&) const override { return {}; }
   std::optional<BsdfSample> sample(const Vec3& wo, Rng&) const override {
-    return BsdfSample{{-wo.x, -wo.y, wo.z}, Rgb(albedo_), true};
+    return BsdfSample{{-wo.x, -wo.y, wo.z}, Rgb(albedo_), true, 0};
   }
   double pdf(const Vec3&, const Vec3&, Rng&) const override { return 0; }
   double mis_pdf(const Vec3&, const Vec3&) const override { return 0; }
@@ -75,7 +75,9 @@ class LambertWithMisPdf final : public Bsdf {
   LambertWithMisPdf(double albedo, double mis_pdf) : lambert_(Rgb(albedo)), mis_pdf_(mis_pdf) {}
   Rgb eval(const Vec3& wo, const Vec3& wi, Rng& rng) const override { return lambert_.eval(wo, wi, rng); }
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override {
-    return lambert_.sample(wo, rng);
+    auto sample = lambert_.sample(wo, rng);
+    if (sample) sample->mis_pdf = mis_pdf_;
+    return sample;
   }
   double pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const override { return lambert_.pdf(wo, wi, rng); }
   double mis_pdf(const Vec3&, const Vec3&) const override { return mis_pdf_; }

@@ -16,7 +16,7 @@ class BoundedMirror final : public Bsdf {
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override {
     const Vec3 wi = ggx_.sample_mirrored(wo, {rng.uniform(), rng.uniform()});
     if (wi.z <= 0) return {};
-    return BsdfSample{wi, Rgb(1), false};
+    return BsdfSample{wi, Rgb(1), false, 0};
   }
   double pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return mis_pdf(wo, wi); }
   double mis_pdf(const Vec3& wo, const Vec3& wi) const override {

@@ -45,7 +45,7 @@ class Skewed final : public Bsdf {
  public:
   Rgb eval(const Vec3&, const Vec3&, Rng&) const override { return Rgb(kInvPi); }
   std::optional<BsdfSample> sample(const Vec3&, Rng& rng) const override {
-    return BsdfSample{sample_cosine({rng.uniform(), rng.uniform()}), Rgb(1), false};
+    return BsdfSample{sample_cosine({rng.uniform(), rng.uniform()}), Rgb(1), false, 0};
   }
   double pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return mis_pdf(wo, wi); }
   double mis_pdf(const Vec3&, const Vec3& wi) const override {

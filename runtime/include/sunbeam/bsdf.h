@@ -17,6 +17,12 @@ struct BsdfSample {
   Rgb throughput;  // f * cos(theta_i) / pdf of the whole BSDF at wi, or an estimate with that mean;
                    // for a Dirac lobe its weight / its probability
   bool is_dirac;   // the direction comes from a Dirac lobe, which eval and pdf do not see
+  double mis_pdf;  // Bsdf::mis_pdf(wo, wi), known on the way; 0 for a Dirac lobe
+};
+
+struct EvalPdf {
+  Rgb f;       // 1/sr
+  double pdf;  // 1/sr
 };
 
 class Bsdf {
@@ -37,6 +43,11 @@ class Bsdf {
   // The density to weight techniques with (MIS): deterministic and cheap. Equal to pdf() where that is exact,
   // else an approximation; any positive function keeps MIS unbiased.
   virtual double mis_pdf(const Vec3& wo, const Vec3& wi) const = 0;
+
+  // eval() and mis_pdf() together, where they share work at the price of one.
+  virtual EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const {
+    return {eval(wo, wi, rng), mis_pdf(wo, wi)};
+  }
 
   // Whether turning wo and wi together about the normal changes nothing: any tangent serves.
   virtual bool is_isotropic() const { return false; }

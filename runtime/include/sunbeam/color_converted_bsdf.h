@@ -29,6 +29,10 @@ class ColorConvertedBsdf final : public Bsdf {
   }
   double pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const override { return bsdf_.pdf(wo, wi, rng); }
   double mis_pdf(const Vec3& wo, const Vec3& wi) const override { return bsdf_.mis_pdf(wo, wi); }
+  EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const override {
+    const EvalPdf value = bsdf_.eval_pdf(wo, wi, rng);
+    return {matrix_ * value.f, value.pdf};
+  }
   bool is_isotropic() const override { return bsdf_.is_isotropic(); }
 
  private:

@@ -15,7 +15,8 @@ class Lambert final : public Bsdf {
   }
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override {
     if (wo.z <= 0) return {};
-    return BsdfSample{sample_cosine({rng.uniform(), rng.uniform()}), albedo_, false};
+    const Vec3 wi = sample_cosine({rng.uniform(), rng.uniform()});
+    return BsdfSample{wi, albedo_, false, cosine_pdf(wi.z)};
   }
   double pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return mis_pdf(wo, wi); }
   double mis_pdf(const Vec3& wo, const Vec3& wi) const override { return wo.z > 0 ? cosine_pdf(wi.z) : 0; }

@@ -19,11 +19,6 @@ namespace sunbeam {
 
 class BoundTable;
 
-struct EvalPdf {
-  Rgb f;       // 1/sr
-  double pdf;  // 1/sr
-};
-
 class TableBsdf final : public Bsdf {
  public:
   // Slices the table at `parameters`. Outside the grid they are clamped to it, or Error is thrown.
@@ -39,6 +34,7 @@ class TableBsdf final : public Bsdf {
 
   // Both at once, at the price of one.
   EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi) const;
+  EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return eval_pdf(wo, wi); }
 
   // f of one viewer and many lights at a lower price each; f[k] belongs to wi[k], and there are as many.
   void eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f) const;

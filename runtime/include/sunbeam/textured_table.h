@@ -60,6 +60,7 @@ class TexturedTable {
 
     // Both at once, at the price of one.
     EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi) const;
+    EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return eval_pdf(wo, wi); }
 
     const Parameters& parameters() const { return parameters_; }
     // Weight of the mirror direction; 0 for a rough film.

@@ -1,0 +1,116 @@
+// The rest of a film over a scattering pigment without walks: adding and doubling, one Fourier mode of the
+// azimuth at a time. For isotropic films whose facets are met once (solves()).
+//
+// Directions below the film are Gauss nodes of the cosine m, m_j of weight w_j, M = diag(2 pi w_j m_j). Per
+// wavelength and mode k, with Int g cos(k phi) dphi of what light carries and 1/(2 pi) Int g cos(k phi) dphi
+// of what it is carried by:
+//   E_w  light that enters along w, per node: moments of the film's passage at its facets,
+//   F    light that the film throws back down, from node to node, the same of its reflection,
+//   R, T of the pigment alone (functions: radiance that leaves, for power that arrives), by doubling a layer
+//        thin enough to scatter once.
+// What never reaches the base is, with D = (1 - F M R)^-1 E_wi the light on its way down,
+//   slab_k(wo, wi) = s E_wo . R D,      slab = sum_k (2 - delta_k0) slab_k cos(k phi),
+// and the base, which forgets directions, sees the mode 0 alone:
+//   base = s kd/pi A(wo) A(wi) / (1 - kd returned),  A(w) = 1 . M T D,
+// returned = the share of what leaves a Lambertian base that comes back to it. The facets' integrals E and F
+// interpolate what they act on between the nodes, so that no lobe is too narrow. Discretisation errors:
+// tests/accuracy/slab_solver_test.cpp. Sources: van de Hulst, Multiple Light Scattering (1980), ch. 4;
+// Jakob et al., A comprehensive framework for rendering layered materials, SIGGRAPH 2014.
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "bake/live/dense.h"
+#include "bake/live/kernels.h"
+#include "bake/live/slab.h"
+#include "sunbeam/angles.h"
+
+namespace sunbeam {
+
+class SlabSolver {
+ public:
+  // How finely it works.
+  struct Resolution {
+    int below = 12, above = 20;  // cosines up to the critical one of the film seen from below, and from there
+    int across = 24, around = 24;  // facets of one direction: over the cap, and over half a turn
+    double least = 3e-5;           // share of the phase function that may be left out
+  };
+
+  // Largest |mean cosine| of a scattering event.
+  static constexpr double kMostForward = 0.75;
+
+  static bool solves(const Material& material);
+
+  // For this material with any film thickness and any optical depth of `depths` (absorption, at any
+  // wavelength), between directions of these cosines (> 0, outside).
+  SlabSolver(const Material& material, std::vector<double> cosines, Resolution resolution);
+  SlabSolver(const Material& material, std::vector<double> cosines)
+      : SlabSolver(material, std::move(cosines), Resolution()) {}
+
+  // Prepares the pigment at an optical depth of absorption. May be called by many threads, but not beside
+  // rest().
+  void add_depth(double depth);
+
+  // The film at one thickness and all wavelengths, for many depths.
+  class Film {
+   public:
+    Film(const SlabSolver& solver, double film_thickness_nm, const Wavelengths& wavelengths);
+
+    // Fourier modes of rest, 1/sr, between cosines a (of wo) and b (of wi): at() sums them. Absorption is
+    // that of the pigment at 510 nm, times its thickness. Throws Error if a depth has not been added.
+    class Modes {
+     public:
+      Rgb at(std::size_t a, std::size_t b, double azimuth) const;
+
+     private:
+      friend class Film;
+      std::size_t cosines_ = 0;
+      std::vector<std::vector<Rgb>> mode_;  // each over (a, b)
+    };
+    Modes rest(double optical_depth) const;
+
+   private:
+    void add_wavelength(std::size_t wavelength, double depth, Modes& modes) const;
+
+    const SlabSolver& solver_;
+    Wavelengths wavelengths_;
+    int count_;                        // of wavelengths
+    std::vector<double> thrown_back_;  // F by (mode, from, to, wavelength)
+    std::vector<double> entry_;        // E by (mode, cosine, to, wavelength)
+  };
+
+ private:
+  // Nodes and weights of the cosine below the film, and what values between them are made of.
+  struct Nodes {
+    std::vector<double> cosine, root;  // root of M
+    static constexpr int kStencil = 6;
+    struct Stencil {
+      int first;
+      std::array<double, kStencil> weight;
+    };
+    int size() const { return static_cast<int>(cosine.size()); }
+    Stencil at(double m) const;
+  };
+  // R and T between nodes, times the roots of M on both sides.
+  struct Layer {
+    std::vector<Matrix> reflection;  // per mode
+    Matrix transmission;             // mode 0
+  };
+
+  static Nodes make_nodes(const Material& material, const Resolution& resolution);
+  Layer make_layer(double depth) const;
+  void double_up(int mode, double depth, Matrix& r, Matrix& t) const;
+
+  Material material_;
+  std::vector<double> cosines_;
+  Resolution resolution_;
+  Nodes nodes_;
+  int modes_, terms_;  // of the azimuth; of the phase function's Legendre series
+  std::mutex mutex_;   // of
+  std::map<double, Layer> layers_;
+};
+
+}  // namespace sunbeam

@@ -12,7 +12,7 @@
 namespace sunbeam {
 
 struct SurfaceHit {
-  Vec3 position;          // on the surface to double precision (spheres) or to that of its vertices (meshes)
+  Vec3 position;          // on the surface, to double precision (spheres) or single precision (meshes)
   Vec3 geometric_normal;  // unit; out of a sphere, by the winding of a triangle
   Vec3 shading_normal;    // unit, interpolated, on the side of the geometric normal
   // Unit, along dp/du (increasing u), continuous over smooth meshes; only nearly perpendicular to the shading

@@ -122,6 +122,7 @@ std::string stats_json(const RenderStats& s, const std::string& estimators) {
   nlohmann::ordered_json json;
   json["seconds"] = s.seconds;
   json["cpu_seconds"] = s.cpu_seconds;
+  json["build_cpu_seconds"] = s.build_cpu_seconds;
   json["samples"] = s.samples;
   json["rays"] = s.rays;
   json["vertices"] = s.vertices;

@@ -50,6 +50,7 @@ class ExactBsdf final : public Bsdf {
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override;
   double pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return mis_pdf(wo, wi); }
   double mis_pdf(const Vec3& wo, const Vec3& wi) const override;
+  bool is_isotropic() const override { return true; }
 
   // 1/sr; 0 for a smooth film.
   Rgb first(const Vec3& wo, const Vec3& wi) const;

@@ -10,6 +10,7 @@ LiveBsdf::LiveBsdf(const Material& material, const Wavelengths& wavelengths, Tec
     : pfmc_(material, wavelengths),
       ggx_(material.roughness),
       is_smooth_(material.is_smooth()),
+      is_isotropic_(material.roughness.is_isotropic()),
       technique_(technique),
       share_{} {
   for (int k = 0; k < pfmc_.wavelengths(); ++k) share_[k + 1] = share_[k] + pfmc_.importance(k);

@@ -28,6 +28,7 @@ class LiveBsdf final : public Bsdf {
   // of leaving it after a visit of the base; both from tables over the cosine. How far it is off is measured
   // in docs/live.md.
   double mis_pdf(const Vec3& wo, const Vec3& wi) const override;
+  bool is_isotropic() const override { return is_isotropic_; }
 
  private:
   template <class Use>
@@ -39,7 +40,7 @@ class LiveBsdf final : public Bsdf {
 
   Pfmc pfmc_;
   Ggx ggx_;
-  bool is_smooth_;
+  bool is_smooth_, is_isotropic_;
   Technique technique_;
   Curve reflect_chance_;                            // of sample(), from outside
   Curve leaving_;                                   // of what comes from below: density over wi, 1/sr

@@ -82,7 +82,9 @@ ColorMatrix rgb_to_rgb(ColorSpace from, ColorSpace to) {
 }
 
 double luminance(const Rgb& color, ColorSpace space) {
-  return dot(rgb_to_xyz(space).row[1], {color.r, color.g, color.b});
+  static const Vec3 kRec709 = rgb_to_xyz(ColorSpace::rec709).row[1];
+  static const Vec3 kAcescg = rgb_to_xyz(ColorSpace::acescg).row[1];
+  return dot(space == ColorSpace::acescg ? kAcescg : kRec709, {color.r, color.g, color.b});
 }
 
 GamutClip clip_negative(const Rgb& color, ColorSpace space) {

@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
+#include <array>
 #include <limits>
 #include <vector>
 
@@ -29,16 +30,35 @@ using Device = std::unique_ptr<RTCDeviceTy, DeviceRelease>;
 using SceneHandle = std::unique_ptr<RTCSceneTy, SceneRelease>;
 using Geometry = std::unique_ptr<RTCGeometryTy, GeometryRelease>;
 
+// What every hit of a mesh reads, close together. Embree reads the positions.
+struct MeshVertex {
+  std::array<float, 3> position;
+  std::array<float, 3> normal;  // 0 on a flat mesh
+};
+
 // Exactly one of `sphere` and `mesh` is set. Its place in the list is its geometry id.
 struct Surface {
   const Sphere* sphere = nullptr;
   const Mesh* mesh = nullptr;
   int object = -1, light = -1;
   double offset = 0;
+  std::vector<MeshVertex> vertices = {};
   std::vector<Vec3> tangents = {};  // of the triangles of a flat mesh, of the vertices of a smooth one
   bool has_coordinates = false;
   std::vector<UvDerivatives> derivatives = {};  // of the vertices of a mesh with coordinates
 };
+
+std::array<float, 3> to_float(const Vec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+Vec3 to_double(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
+
+std::vector<MeshVertex> vertices_of(const Mesh& mesh) {
+  std::vector<MeshVertex> vertices(mesh.positions.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    vertices[i] = {to_float(mesh.positions[i]), to_float(mesh.normals.empty() ? Vec3{} : mesh.normals[i])};
+  return vertices;
+}
 
 double largest_coordinate(const Vec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
 
@@ -56,11 +76,11 @@ std::vector<Vec3> tangents_of(const Mesh& mesh) {
   return mesh.normals.empty() ? triangle_tangents(mesh) : vertex_tangents(mesh);
 }
 
-bool needs_coordinates(const Scene& scene, int object) {
-  const int material = scene.objects[static_cast<std::size_t>(object)].material;
-  const SceneMaterial& description = scene.materials[static_cast<std::size_t>(material)];
-  return description.relief || description.varies();
+std::size_t material_of(const Scene& scene, int object) {
+  return static_cast<std::size_t>(scene.objects[static_cast<std::size_t>(object)].material);
 }
+
+bool needs_coordinates(const SceneMaterial& material) { return material.relief || material.varies(); }
 
 // --- spheres: Embree calls back, and the roots are found in double precision ---
 
@@ -125,24 +145,14 @@ Geometry make_sphere(RTCDevice device, Surface& surface) {
   return geometry;
 }
 
-template <class T>
-T* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t count) {
-  void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, 3 * sizeof(T), count);
-  if (!buffer) throw Error(fmt::format("Embree: no memory for a mesh buffer of {} entries", count));
-  return static_cast<T*>(buffer);
-}
-
-Geometry make_mesh(RTCDevice device, const Mesh& mesh) {
+// Embree reads the surface's own vertices and triangles.
+Geometry make_mesh(RTCDevice device, const Surface& surface) {
   Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-  float* vertex =
-      new_buffer<float>(geometry.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.positions.size());
-  for (const Vec3& position : mesh.positions)
-    for (const double coordinate : {position.x, position.y, position.z})
-      *vertex++ = static_cast<float>(coordinate);
-  auto* index =
-      new_buffer<unsigned>(geometry.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles.size());
-  for (const auto& triangle : mesh.triangles)
-    for (const std::uint32_t corner : triangle) *index++ = corner;
+  const auto& triangles = surface.mesh->triangles;
+  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                             surface.vertices.data(), 0, sizeof(MeshVertex), surface.vertices.size());
+  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
+                             sizeof(triangles[0]), triangles.size());
   return geometry;
 }
 
@@ -172,24 +182,27 @@ Point triangle_point(const Surface& surface, const RTCHit& hit) {
   const Mesh& mesh = *surface.mesh;
   const auto [i, j, k] = mesh.triangles[hit.primID];
   const double u = hit.u, v = hit.v;
-  const auto blend = [&](const std::vector<Vec3>& values) {
-    return (1 - u - v) * values[i] + u * values[j] + v * values[k];
+  const auto mix = [&](const auto& a, const auto& b, const auto& c) {
+    return (1 - u - v) * a + u * b + v * c;
   };
-  const Vec3 winding = cross(mesh.positions[j] - mesh.positions[i], mesh.positions[k] - mesh.positions[i]);
-  const Vec3 geometric = normalize(winding);
-  Vec3 shading = mesh.normals.empty() ? geometric : blend(mesh.normals);
+  const MeshVertex &a = surface.vertices[i], &b = surface.vertices[j], &c = surface.vertices[k];
+  const Vec3 p = to_double(a.position), q = to_double(b.position), r = to_double(c.position);
+  const Vec3 geometric = normalize(cross(q - p, r - p));
+  Vec3 shading =
+      mesh.normals.empty() ? geometric : mix(to_double(a.normal), to_double(b.normal), to_double(c.normal));
   if (dot(shading, geometric) < 0) shading = -shading;
   const double size = length(shading);
   Vec3 tangent;
   if (!surface.tangents.empty())
-    tangent = mesh.normals.empty() ? surface.tangents[hit.primID] : unit_or_zero(blend(surface.tangents));
-  Point point = {blend(mesh.positions), geometric, size > 0 ? shading / size : geometric, tangent};
+    tangent = mesh.normals.empty()
+                  ? surface.tangents[hit.primID]
+                  : unit_or_zero(mix(surface.tangents[i], surface.tangents[j], surface.tangents[k]));
+  Point point = {mix(p, q, r), geometric, size > 0 ? shading / size : geometric, tangent};
   if (!surface.derivatives.empty()) {
-    const auto mix = [&](double a, double b, double c) { return (1 - u - v) * a + u * b + v * c; };
-    const Point2 &a = mesh.uvs[i], &b = mesh.uvs[j], &c = mesh.uvs[k];
-    point.uv = {mix(a.x, b.x, c.x), mix(a.y, b.y, c.y)};
-    const UvDerivatives &p = surface.derivatives[i], &q = surface.derivatives[j], &r = surface.derivatives[k];
-    point.derivatives = {(1 - u - v) * p.du + u * q.du + v * r.du, (1 - u - v) * p.dv + u * q.dv + v * r.dv};
+    const Point2 &uv_i = mesh.uvs[i], &uv_j = mesh.uvs[j], &uv_k = mesh.uvs[k];
+    point.uv = {mix(uv_i.x, uv_j.x, uv_k.x), mix(uv_i.y, uv_j.y, uv_k.y)};
+    const UvDerivatives &d = surface.derivatives[i], &e = surface.derivatives[j], &f = surface.derivatives[k];
+    point.derivatives = {mix(d.du, e.du, f.du), mix(d.dv, e.dv, f.dv)};
   }
   return point;
 }
@@ -218,14 +231,14 @@ struct EmbreeScene::Impl {
   Device device;
   SceneHandle scene;
 
-  void collect(const Scene& source);
+  void collect(const Scene& source, const std::function<bool(std::size_t)>& is_isotropic);
   void build();
   void require_no_error() const {
     if (!error.empty()) throw Error("Embree: " + error);
   }
 };
 
-void EmbreeScene::Impl::collect(const Scene& source) {
+void EmbreeScene::Impl::collect(const Scene& source, const std::function<bool(std::size_t)>& is_isotropic) {
   light_meshes.reserve(source.quad_lights.size());  // surfaces point into it
   for (const QuadLight& light : source.quad_lights) {
     light_meshes.push_back(quad_mesh(light.corner, light.edge_u, light.edge_v));
@@ -244,8 +257,11 @@ void EmbreeScene::Impl::collect(const Scene& source) {
   }
   for (Surface& surface : surfaces) {
     surface.offset = surface.sphere ? offset_of(*surface.sphere) : offset_of(*surface.mesh);
-    if (surface.mesh) surface.tangents = tangents_of(*surface.mesh);
-    surface.has_coordinates = surface.object >= 0 && needs_coordinates(source, surface.object);
+    if (surface.mesh) surface.vertices = vertices_of(*surface.mesh);
+    if (surface.light >= 0) continue;
+    const std::size_t material = material_of(source, surface.object);
+    if (surface.mesh && !is_isotropic(material)) surface.tangents = tangents_of(*surface.mesh);
+    surface.has_coordinates = needs_coordinates(source.materials[material]);
     if (surface.mesh && surface.has_coordinates) surface.derivatives = vertex_derivatives(*surface.mesh);
   }
 }
@@ -264,8 +280,8 @@ void EmbreeScene::Impl::build() {
   scene.reset(rtcNewScene(device.get()));
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);  // no cracks between triangles
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    const Geometry geometry = surfaces[i].sphere ? make_sphere(device.get(), surfaces[i])
-                                                 : make_mesh(device.get(), *surfaces[i].mesh);
+    const Geometry geometry =
+        surfaces[i].sphere ? make_sphere(device.get(), surfaces[i]) : make_mesh(device.get(), surfaces[i]);
     require_no_error();
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometryByID(scene.get(), geometry.get(), static_cast<unsigned>(i));
@@ -274,8 +290,9 @@ void EmbreeScene::Impl::build() {
   require_no_error();
 }
 
-EmbreeScene::EmbreeScene(const Scene& scene) : impl_(std::make_unique<Impl>()) {
-  impl_->collect(scene);
+EmbreeScene::EmbreeScene(const Scene& scene, const std::function<bool(std::size_t)>& is_isotropic)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->collect(scene, is_isotropic);
   impl_->build();
 }
 

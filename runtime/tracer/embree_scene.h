@@ -1,6 +1,7 @@
 // Visibility and nearest hits through Embree. No other file of Sunbeam includes Embree.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -11,7 +12,7 @@
 namespace sunbeam {
 
 struct SurfaceHit {
-  Vec3 position;          // on the surface to double precision (spheres) or to that of its vertices (meshes)
+  Vec3 position;          // on the surface, to double precision (spheres) or single precision (meshes)
   Vec3 geometric_normal;  // unit; out of a sphere, by the winding of a triangle
   Vec3 shading_normal;    // unit, interpolated, on the side of the geometric normal
   // Unit, along dp/du (increasing u), continuous over smooth meshes; only nearly perpendicular to the shading
@@ -30,8 +31,12 @@ struct SurfaceHit {
 
 class EmbreeScene {
  public:
-  // Builds the search structure. `scene` must outlive this. Throws Error with Embree's message if it fails.
-  explicit EmbreeScene(const Scene& scene);
+  // Builds the search structure. `scene` must outlive this. `is_isotropic` tells of which of its materials
+  // SurfaceHit::tangent need not be found; it is then 0 on meshes. Throws Error with Embree's message if it
+  // fails.
+  explicit EmbreeScene(
+      const Scene& scene,
+      const std::function<bool(std::size_t material)>& is_isotropic = [](std::size_t) { return false; });
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;

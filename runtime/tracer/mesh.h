@@ -39,9 +39,6 @@ struct Transform {
   double scale = 1;
   Vec3 rotate_deg = {};
   Vec3 translate = {};
-
-  Vec3 point(const Vec3& p) const;
-  Vec3 direction(const Vec3& d) const;  // turned only
 };
 Mesh transformed(Mesh mesh, const Transform& transform);
 

@@ -35,6 +35,9 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
+double cpu_seconds_since(std::clock_t start) {
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+}
 
 struct HitSums {
   double count = 0, on_surface = 0;
@@ -72,6 +75,8 @@ void require_outside(const EmbreeScene& geometry, const Vec3& position) {
       object + 1));
 }
 
+bool is_isotropic(const SurfaceBsdf& bsdf) { return bsdf.uniform && bsdf.uniform->is_isotropic(); }
+
 class Renderer {
  public:
   Renderer(const Scene& scene, std::span<const SurfaceBsdf> bsdfs, const RenderSettings& settings,
@@ -79,7 +84,7 @@ class Renderer {
       : settings_(settings),
         window_(window),
         start_(start),
-        geometry_(scene),
+        geometry_(scene, [&](std::size_t i) { return is_isotropic(bsdfs[i]); }),
         lights_(scene),
         tracer_(scene, geometry_, lights_, bsdfs),
         camera_(scene.camera, window.width, window.height),
@@ -340,7 +345,14 @@ PixelWindow window_of(const RenderSettings& settings) {
 RenderResult render_in_arena(const Scene& scene, std::span<const SurfaceBsdf> bsdfs,
                              const RenderSettings& settings, Clock::time_point start) {
   const PixelWindow window = window_of(settings);
-  const auto run = [&] { return Renderer(scene, bsdfs, settings, window, start).run(); };
+  const auto run = [&] {
+    const std::clock_t cpu_start = std::clock();
+    Renderer renderer(scene, bsdfs, settings, window, start);
+    const double build_cpu_seconds = cpu_seconds_since(cpu_start);
+    RenderResult result = renderer.run();
+    result.stats.build_cpu_seconds = build_cpu_seconds;
+    return result;
+  };
   if (settings.threads == 0) return run();
   // The arena bounds the threads of this call; the control lets it have more than there are cores.
   const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
@@ -358,7 +370,7 @@ RenderResult render(const Scene& scene, std::span<const SurfaceBsdf> bsdfs, cons
 
   RenderStats& stats = result.stats;
   stats.seconds = seconds_since(start);
-  stats.cpu_seconds = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
+  stats.cpu_seconds = cpu_seconds_since(cpu_start);
   stats.samples_per_second = static_cast<double>(stats.samples) / std::max(stats.seconds, 1e-9);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

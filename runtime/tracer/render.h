@@ -14,9 +14,10 @@
 namespace sunbeam {
 
 struct RenderStats {
-  double seconds = 0;      // wall clock, building the search structure included
-  double cpu_seconds = 0;  // of the whole process meanwhile
-  double fraction = 0;     // of the work, as far as it can be foreseen; 1 when a limit was met
+  double seconds = 0;            // wall clock, building the search structure included
+  double cpu_seconds = 0;        // of the whole process meanwhile
+  double build_cpu_seconds = 0;  // of those, until the first ray could be traced
+  double fraction = 0;           // of the work, as far as it can be foreseen; 1 when a limit was met
   std::uint64_t samples = 0, rays = 0, vertices = 0;
   double samples_per_second = 0;
   long peak_rss_mb = 0;           // of the process so far

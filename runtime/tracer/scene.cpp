@@ -301,11 +301,11 @@ Mesh read_snake(const ConfigTable& table) {
 }
 
 Mesh read_mesh(const ConfigTable& table, std::vector<std::string>& warnings) {
-  const LoadedMesh loaded = load_named_file(table, load_mesh);
+  LoadedMesh loaded = load_named_file(table, load_mesh);
   if (loaded.dropped > 0)
     warnings.push_back(
         fmt::format("{}: {} triangles without area are left out", table.string("file"), loaded.dropped));
-  return loaded.mesh;
+  return std::move(loaded.mesh);
 }
 
 // A sphere is exact, or a mesh if it has a `resolution`; only that can be turned.
@@ -330,11 +330,11 @@ std::variant<Sphere, Mesh> read_shape(const ConfigTable& table, std::vector<std:
   Transform transform = read_transform(table);
   if (type <= 2) transform.translate = transform.translate + point(table, "center", Vec3{});
   if (type == 0) return read_sphere(table, transform);
-  const Mesh mesh = transformed(type == 1   ? read_torus(table)
-                                : type == 2 ? read_plane(table)
-                                : type == 3 ? read_mesh(table, warnings)
-                                            : read_snake(table),
-                                transform);
+  Mesh mesh = transformed(type == 1   ? read_torus(table)
+                          : type == 2 ? read_plane(table)
+                          : type == 3 ? read_mesh(table, warnings)
+                                      : read_snake(table),
+                          transform);
   require_mesh_coordinates(table, mesh);
   return mesh;
 }

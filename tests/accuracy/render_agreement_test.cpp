@@ -38,8 +38,7 @@ RenderResult render_scene(const Scene& scene, const Table& table, bool live, std
     else if (live)
       owned.push_back(in_rec709(LiveBsdf(skin, spectrum.wavelengths(skin)), table));
     else
-      owned.push_back(
-          in_rec709(TableBsdf(table, Parameters::of(skin), OutsideGrid::refuse), table));
+      owned.push_back(in_rec709(TableBsdf(table, Parameters::of(skin), OutsideGrid::refuse), table));
     bsdfs.push_back(owned.back().get());
   }
   RenderSettings settings;

@@ -3,7 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
+#include <array>
 #include <vector>
 
 #include "sunbeam/bsdf.h"
@@ -17,12 +17,6 @@ struct PairedTime {
   double ns, yardstick_ns;  // a call
   double ratio;
 };
-
-inline double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 class Stopwatch {
  public:

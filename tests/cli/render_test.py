@@ -58,7 +58,8 @@ center = [0.0, 0.0, -1.0]
 material = "floor"
 """
 
-STATS = {"seconds", "cpu_seconds", "samples", "rays", "vertices", "samples_per_second", "peak_rss_mb"}
+STATS = {"seconds", "cpu_seconds", "build_cpu_seconds", "samples", "rays", "vertices", "samples_per_second",
+         "peak_rss_mb"}
 
 
 def png_size(content):

@@ -82,6 +82,8 @@ TEST(Render, StatisticsCountWhatWasDone) {
   EXPECT_EQ(result.stats.bad_samples, 0u);
   EXPECT_GT(result.stats.seconds, 0);
   EXPECT_GT(result.stats.cpu_seconds, 0);
+  EXPECT_GT(result.stats.build_cpu_seconds, 0);
+  EXPECT_LE(result.stats.build_cpu_seconds, result.stats.cpu_seconds);
   EXPECT_GT(result.stats.peak_rss_mb, 1);
   EXPECT_NEAR(result.stats.samples_per_second * result.stats.seconds, 7000, 1e-3);
 }

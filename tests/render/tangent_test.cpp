@@ -109,6 +109,16 @@ TEST(Tangent, OnAQuadIsAlongEdgeUFromBothSides) {
       expect_near(hit_from(geometry, point + side * normal, point).tangent, normalize(u), 1e-12);
 }
 
+TEST(Tangent, IsNotLookedForWhereTheMaterialIsIsotropic) {
+  const Scene scene = with(quad_mesh({}, {1, 0, 0}, {0, 1, 0}));
+  const auto tangent = [&](bool isotropic) {
+    const EmbreeScene geometry(scene, [=](std::size_t) { return isotropic; });
+    return hit_from(geometry, {0.5, 0.5, 1}, {0.5, 0.5, 0}).tangent;
+  };
+  EXPECT_EQ(length(tangent(true)), 0);
+  EXPECT_EQ(length(tangent(false)), 1);
+}
+
 // The torus about z, and rays onto it.
 struct TorusTest : testing::Test {
   static constexpr int kResolution = 128;

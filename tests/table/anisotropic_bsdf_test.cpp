@@ -193,6 +193,22 @@ TEST(AnisotropicTable, OfAnIsotropicFilmWithoutAzimuth) {
   for (const Vec3& wo : kViewers) EXPECT_NEAR(one.albedo(wo).g, other.albedo(wo).g, 1e-3 * one.albedo(wo).g);
 }
 
+// Renderers skip tangents on the word of is_isotropic().
+TEST(AnisotropicTable, SaysWhetherTurningChangesIt) {
+  const auto rest = [](const AngleCoordinates& c) { return 0.1 - 0.05 * std::cos(c.phi_o - c.phi_i); };
+  const TableBsdf isotropic = bsdf_of(make_table(Symmetry::isotropic, 0.3, rest));
+  const TableBsdf brushed = bsdf_of(brushed_table());
+  EXPECT_TRUE(isotropic.is_isotropic());
+  EXPECT_FALSE(brushed.is_isotropic());
+  const auto turned = [](const Vec3& v) { return Vec3{-v.y, v.x, v.z}; };
+  Rng rng(10, 0);
+  for (int k = 0; k < 1000; ++k) {
+    const Vec3 wo = random_direction(rng), wi = random_direction(rng);
+    const double value = isotropic.eval(wo, wi, rng).g;
+    ASSERT_NEAR(isotropic.eval(turned(wo), turned(wi), rng).g, value, 1e-5 * value);
+  }
+}
+
 // A rest of |dphi|: linear in it for wi at a node, off nodes by at most h^2 / 8 of its second derivative,
 // twice: 0.05 x 0.7 (what stands in front, 0.7^2 / 1.5^2 at most) x (2 pi / 16)^2 / 4.
 TEST(AnisotropicTable, OfAnIsotropicFilmWithAzimuth) {

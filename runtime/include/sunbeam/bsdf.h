@@ -48,6 +48,9 @@ class Bsdf {
   virtual EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const {
     return {eval(wo, wi, rng), mis_pdf(wo, wi)};
   }
+
+  // Whether turning wo and wi together about the normal changes nothing: any tangent serves.
+  virtual bool is_isotropic() const { return false; }
 };
 
 }  // namespace sunbeam

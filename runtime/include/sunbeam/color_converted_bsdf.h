@@ -33,6 +33,7 @@ class ColorConvertedBsdf final : public Bsdf {
     const EvalPdf value = bsdf_.eval_pdf(wo, wi, rng);
     return {matrix_ * value.f, value.pdf};
   }
+  bool is_isotropic() const override { return bsdf_.is_isotropic(); }
 
  private:
   Inner bsdf_;

@@ -20,6 +20,7 @@ class Lambert final : public Bsdf {
   }
   double pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return mis_pdf(wo, wi); }
   double mis_pdf(const Vec3& wo, const Vec3& wi) const override { return wo.z > 0 ? cosine_pdf(wi.z) : 0; }
+  bool is_isotropic() const override { return true; }
 
  private:
   Rgb albedo_;

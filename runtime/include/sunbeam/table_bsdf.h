@@ -30,6 +30,7 @@ class TableBsdf final : public Bsdf {
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override;
   double pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return mis_pdf(wo, wi); }
   double mis_pdf(const Vec3& wo, const Vec3& wi) const override { return eval_pdf(wo, wi).pdf; }
+  bool is_isotropic() const override { return material().roughness.is_isotropic(); }
 
   // Both at once, at the price of one.
   EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi) const;

@@ -1,6 +1,6 @@
 """montage.py OUT.png COLUMNS A.png B.png ...: pictures of one size side by side, row by row; "-" leaves a place empty.
 
-Reads and writes PNGs of 8 or 16 bits, grey or RGB, without alpha, not interlaced, by the standard library alone.
+Reads PNGs as sunbeam writes them (grey, RGB or palette of 8 bits, not interlaced) and writes RGB, by the standard library alone.
 """
 
 import pathlib
@@ -11,7 +11,9 @@ import zlib
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 GAP = 4  # pixels between pictures
 BACKGROUND = b"\xff\xff\xff"
-CHANNELS = {0: 1, 2: 3}  # PNG colour type: grey, RGB
+STEP = 4  # values are rounded to its multiples: below the noise of a rendering, and a third less to store
+ROUNDED = bytes(min(255, (v + STEP // 2) // STEP * STEP) for v in range(256))
+CHANNELS = {0: 1, 2: 3, 3: 1}  # of the PNG colour types grey, RGB, palette
 
 
 def paeth(a, b, c):
@@ -46,16 +48,16 @@ def read_png(path):
         sys.exit(f"{path}: is no PNG file")
     parts = list(chunks(data))
     width, height, bits, colour, _, _, interlace = struct.unpack(">IIBBBBB", parts[0][1])
-    if bits not in (8, 16) or colour not in CHANNELS or interlace:
-        sys.exit(f"{path}: {bits} bits, colour type {colour}, interlace {interlace}; allowed: 8 or 16, 0 or 2, 0")
-    step = CHANNELS[colour] * bits // 8
+    if bits != 8 or colour not in CHANNELS or interlace:
+        sys.exit(f"{path}: found {bits} bits, colour type {colour}, interlace {interlace}; allowed: 8 bits, 0, 2 or 3, 0")
+    step = CHANNELS[colour]
+    palette = next((body for name, body in parts if name == b"PLTE"), bytes(v for g in range(256) for v in (g, g, g)))
     stream = zlib.decompress(b"".join(body for name, body in parts if name == b"IDAT"))
     rows, row = [], bytearray(width * step)
     for y in range(height):
         start = y * (width * step + 1)
         row = unfiltered(stream[start], stream[start + 1:start + 1 + width * step], row, step)
-        values = row[::bits // 8]
-        rows.append(bytes(values if colour == 2 else [v for v in values for _ in range(3)]))
+        rows.append(bytes(row) if step == 3 else b"".join(palette[3 * v:3 * v + 3] for v in row))
     return width, rows
 
 
@@ -94,7 +96,7 @@ def main():
         if first:
             result += [BACKGROUND * (columns * (width + GAP) - GAP)] * GAP
         for y in range(height):
-            result.append((BACKGROUND * GAP).join(pictures[name][1][y] if name in pictures else empty
+            result.append((BACKGROUND * GAP).join(pictures[name][1][y].translate(ROUNDED) if name in pictures else empty
                                                   for name in names[first:first + columns]))
     write_png(out, result)
 

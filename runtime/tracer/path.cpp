@@ -38,7 +38,8 @@ struct PathTracer::Vertex {
   Vec3 wo;                          // local
   double offset;
   const Bsdf* bsdf;
-  double film_thickness_nm;
+  const SceneMaterial* material;
+  Point2 uv;
   std::optional<Vec3> smooth_normal;  // on the viewer's side, where a relief turned that of the frame
 
   bool is_above(const Vec3& world) const { return dot(world, geometric_normal) > 0; }
@@ -51,7 +52,7 @@ struct PathTracer::Vertex {
             .shading_normal = frame.normal,
             .geometric_normal = geometric_normal,
             .depth = distance,
-            .film_thickness_nm = film_thickness_nm};
+            .film_thickness_nm = material->parameters[0] ? material->parameters[0]->at(uv) : 0};
   }
   // Where rays start, off the surface.
   Vec3 origin() const { return position + offset * geometric_normal; }
@@ -79,15 +80,12 @@ PathTracer::Vertex PathTracer::make_vertex(const Ray& ray, const SurfaceHit& hit
   const Vec3 tangent = turned_tangent(hit.tangent, hit.shading_normal, description.tangent_rotation_deg);
   const Frame frame = Frame::from_normal_and_tangent(normal, tangent);
   const SurfaceBsdf& bsdf = bsdfs_[material];
-  const Parameters parameters = description.parameters_at(hit.uv);
-  return {hit.position,
-          geometric,
-          frame,
-          frame.to_local(wo),
-          hit.offset,
-          bsdf.uniform ? bsdf.uniform : &bsdf.varying->at(parameters, room),
-          parameters.film_thickness_nm,
-          smooth};
+  return {
+      hit.position, geometric,
+      frame,        frame.to_local(wo),
+      hit.offset,   bsdf.uniform ? bsdf.uniform : &bsdf.varying->at(description.parameters_at(hit.uv), room),
+      &description, hit.uv,
+      smooth};
 }
 
 // What the end of `ray` emits, weighted by MIS if the ray was drawn with density `bsdf_pdf`. Without one
@@ -121,7 +119,7 @@ Rgb PathTracer::direct_light(const Vertex& vertex, Rng& rng, PathCounts& counts)
   return value.f * light->radiance * (wi.z * weight * shadowing / light->pdf);
 }
 
-Rgb PathTracer::radiance(Ray ray, Rng& rng, PathCounts& counts, FirstHit& first) const {
+Rgb PathTracer::radiance(Ray ray, Rng& rng, PathCounts& counts, FirstHit* first) const {
   Rgb result, throughput(1);
   std::optional<double> bsdf_pdf;
   for (int bounce = 0;; ++bounce) {
@@ -133,12 +131,12 @@ Rgb PathTracer::radiance(Ray ray, Rng& rng, PathCounts& counts, FirstHit& first)
     ++counts.vertices;
     BsdfRoom room;
     const Vertex vertex = make_vertex(ray, *hit, room);
-    if (bounce == 0) first = vertex.as_first_hit(hit->distance);
+    if (first && bounce == 0) *first = vertex.as_first_hit(hit->distance);
     result += throughput * direct_light(vertex, rng, counts);
     const auto sample = vertex.bsdf->sample(vertex.wo, rng);
     if (!sample) return result;
     throughput *= sample->throughput;
-    if (bounce == 0) first.albedo = sample->throughput;
+    if (first && bounce == 0) first->albedo = sample->throughput;
     if (!is_finite(sample->wi) || !is_finite(throughput))
       return Rgb(std::numeric_limits<double>::quiet_NaN());
     const Vec3 wi = vertex.frame.to_world(sample->wi);

@@ -32,8 +32,8 @@ class PathTracer {
              std::span<const SurfaceBsdf> bsdfs);
 
   // One estimate of the radiance that arrives along `ray`; not finite if a BSDF returned something not
-  // finite. `first` is filled in.
-  Rgb radiance(Ray ray, Rng& rng, PathCounts& counts, FirstHit& first) const;
+  // finite. `first` is filled in unless it is null.
+  Rgb radiance(Ray ray, Rng& rng, PathCounts& counts, FirstHit* first) const;
 
  private:
   struct Vertex;

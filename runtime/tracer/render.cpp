@@ -199,19 +199,24 @@ class Renderer {
   void render_pixel(int x, int y, std::size_t i, RenderStats& stats) {
     const std::uint64_t pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(window_.width) +
                                 static_cast<std::uint64_t>(x);
-    PixelSums& sums = pixels_[i];
+    PixelSums sums = pixels_[i];  // a copy stays in registers
+    HitSums hits = hits_.empty() ? HitSums() : hits_[i];
+    FirstHit first;
     PathCounts counts;
     while (sums.count() < target_) {
       Rng rng(settings_.seed, pixel | std::uint64_t{sums.count()} << kPixelBits);
       const double dx = rng.uniform(), dy = rng.uniform();
-      FirstHit first;
-      const Rgb sample = tracer_.radiance(camera_.ray(x + dx, y + dy, rng), rng, counts, first);
+      if (!hits_.empty()) first = {};
+      const Rgb sample =
+          tracer_.radiance(camera_.ray(x + dx, y + dy, rng), rng, counts, hits_.empty() ? nullptr : &first);
       const bool good = is_finite(sample);
       sums.add(good ? sample : Rgb());
-      if (!hits_.empty()) hits_[i].add(first);
+      if (!hits_.empty()) hits.add(first);
       if (!good) ++stats.bad_samples;
       ++stats.samples;
     }
+    pixels_[i] = sums;
+    if (!hits_.empty()) hits_[i] = hits;
     stats.rays += counts.rays;
     stats.vertices += counts.vertices;
   }

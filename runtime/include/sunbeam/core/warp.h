@@ -22,9 +22,6 @@ inline Point2 invert_power_cosine(double exponent, const Vec3& w) {
   return {1 - std::pow(w.z, exponent + 1), (phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi)};
 }
 
-inline Vec3 sample_cosine(const Point2& u) {
-  return direction_from_cosine(std::sqrt(1 - u.x), 2 * kPi * u.y);
-}
 inline double cosine_pdf(double cos_theta) { return std::max(0.0, cos_theta) * kInvPi; }
 inline Point2 invert_cosine(const Vec3& w) { return invert_power_cosine(1, w); }
 
@@ -56,5 +53,12 @@ struct Turn {
   }
   double cosine, sine;
 };
+
+// The cosine-weighted hemisphere, z > 0.
+inline Vec3 sample_cosine(const Point2& u) {
+  const double radius = std::sqrt(u.x);
+  const Turn turn(u.y);
+  return {radius * turn.cosine, radius * turn.sine, std::sqrt(1 - u.x)};
+}
 
 }  // namespace sunbeam

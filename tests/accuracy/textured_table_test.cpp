@@ -23,29 +23,47 @@ const Parameters kPoint{430, 1.37, 0.13};
 constexpr const char* kGrid =
     "film_thickness_nm = {from = 0, to = 700, count = 5}\nbase_ior = {from = 1, to = 2, count = 8}\n"
     "absorption_per_nm = {from = 0, to = 1, count = 8}\n";
-
-Table factored(SmallRecipe recipe) {
-  std::string text = recipe.text();
-  text.replace(text.find("\"dense\""), 7, "\"factored\"");
-  return bake_table(parse_recipe(text, "small.toml"), {.seed = 1, .threads = 0, .on_progress = {}});
-}
+// Of dense tables, whose nodes are dear.
+constexpr const char* kCoarseGrid =
+    "film_thickness_nm = {from = 0, to = 700, count = 4}\nbase_ior = {from = 1, to = 2, count = 3}\n"
+    "absorption_per_nm = {from = 0, to = 1, count = 3}\n";
 
 struct Case {
   std::string name;
   SmallRecipe recipe;
+  std::string encoding = "factored";
+  std::string roughness = {};  // in place of the recipe's
+  std::string table = {};      // more lines of [table]
+  double median = 0.001,
+         p99 = 0.01;  // of the difference to bound tables; p99 holds at the grid's corners too
 };
 void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
 
+void replace(std::string& text, const std::string& what, const std::string& by) {
+  text.replace(text.find(what), what.size(), by);
+}
+
+Table baked(const Case& one) {
+  std::string text = one.recipe.text();
+  replace(text, "encoding = \"dense\"\n", "encoding = \"" + one.encoding + "\"\n" + one.table);
+  if (!one.roughness.empty())
+    replace(text, "roughness = " + to_text(one.recipe.roughness), "roughness = " + one.roughness);
+  return bake_table(parse_recipe(text, "small.toml"), {.seed = 1, .threads = 0, .on_progress = {}});
+}
+
 const Table& table_of(const Case& one) {
   static std::map<std::string, Table> cache;
-  if (!cache.count(one.name)) cache[one.name] = factored(one.recipe);
+  if (!cache.count(one.name)) cache[one.name] = baked(one);
   return cache.at(one.name);
 }
 
 class TexturedTables : public ::testing::TestWithParam<Case> {
  protected:
   const Table& table() const { return table_of(GetParam()); }
-  TexturedTable textured() const { return TexturedTable(table()); }
+  const TexturedTable& textured() const {
+    static std::map<std::string, TexturedTable> cache;
+    return cache.try_emplace(GetParam().name, table()).first->second;
+  }
 };
 
 Parameters random_parameters(const Table& table, Rng& rng) {
@@ -58,8 +76,7 @@ Parameters random_parameters(const Table& table, Rng& rng) {
 double mean_abs(const Rgb& x) { return (std::abs(x.r) + std::abs(x.g) + std::abs(x.b)) / 3; }
 
 // As bake/verify.h measures a table: Int |difference| cos / max(Int |f| cos, 0.002).
-double error_at(const TexturedTable& textured, const Table& table, Rng& rng) {
-  const Parameters at = random_parameters(table, rng);
+double error_at(const TexturedTable& textured, const Table& table, const Parameters& at, Rng& rng) {
   const TexturedTable::At bsdf = textured.at(at);
   const TableBsdf reference(table, at, OutsideGrid::refuse);
   const Vec3 wi = direction_from_cosine(lerp(rng.uniform(), std::cos(89 * kPi / 180), 1), 1);
@@ -77,31 +94,65 @@ double error_at(const TexturedTable& textured, const Table& table, Rng& rng) {
 }
 
 TEST_P(TexturedTables, AgreeWithBoundTables) {
-  const TexturedTable textured = this->textured();
+  const TexturedTable& textured = this->textured();
   std::vector<double> errors;
   Rng rng(5, 0);
-  for (int k = 0; k < 100; ++k) errors.push_back(error_at(textured, table(), rng));
+  for (int k = 0; k < 100; ++k)
+    errors.push_back(error_at(textured, table(), random_parameters(table(), rng), rng));
   std::sort(errors.begin(), errors.end());
-  EXPECT_LT(errors[50], 0.001);
-  EXPECT_LT(errors[98], 0.01);
+  EXPECT_LT(errors[50], GetParam().median);
+  EXPECT_LT(errors[98], GetParam().p99);
   RecordProperty("median", std::to_string(errors[50]));
   RecordProperty("p99", std::to_string(errors[98]));
 }
 
-// 6 tables x 3 directions, false alarm 1e-3 in all.
+TEST_P(TexturedTables, AgreeAtTheCornersOfTheGrid) {
+  Rng rng(10, 0);
+  double most = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    std::array<double, 3> x;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Axis& axis = table().parameter_axis(k);
+      x[k] = corner >> k & 1 ? axis.high() : axis.low();
+    }
+    for (int k = 0; k < 4; ++k) most = std::max(most, error_at(textured(), table(), {x[0], x[1], x[2]}, rng));
+  }
+  EXPECT_LT(most, GetParam().p99);
+  RecordProperty("most", std::to_string(most));
+}
+
+// No more than arrives is reflected, or than by a bound table, whose bake has noise. 4.5 standard errors of
+// the quadrature: false alarm 25 x 36 x 4e-6 in all.
+TEST_P(TexturedTables, NoMoreEnergyThanArrives) {
+  for (const double thickness : {0.0, 480.0})
+    for (const double ior : {1.0, 1.7}) {
+      const Parameters at{thickness, ior, 0};
+      const TexturedTable::At bsdf = textured().at(at);
+      const TableBsdf reference(table(), at, OutsideGrid::refuse);
+      for (const Vec3& wo : {kOblique, kSteep, kGrazing}) {
+        const test::RgbMean found = test::albedo_by_eval(bsdf, wo, 64, 4, 4);
+        const Rgb dirac = bsdf.dirac(wo), most = reference.albedo(wo);
+        for (int c = 0; c < 3; ++c)
+          EXPECT_LE(found[c].mean() + dirac[c], std::max(1.0, most[c]) + 1e-3 + 4.5 * found[c].std_error())
+              << thickness << ' ' << ior << ' ' << wo.z;
+      }
+    }
+}
+
+// 25 tables x 3 directions, false alarm 1e-3 in all.
 TEST_P(TexturedTables, SamplesFollowThePdf) {
-  const TexturedTable textured = this->textured();
+  const TexturedTable& textured = this->textured();
   const auto bsdf = textured.at(kPoint);
   for (const Vec3& wo : {kOblique, kSteep, kGrazing}) {
     const auto result = test::chi_square_of_sampling(bsdf, wo, {.samples = 100000, .pdf_samples = 16}, 1);
-    EXPECT_GT(result.p_value, test::sidak(1e-3, 18)) << wo.z;
+    EXPECT_GT(result.p_value, test::sidak(1e-3, 75)) << wo.z;
     EXPECT_GT(result.degrees, 100) << wo.z;
   }
 }
 
-// Int pdf + P(Dirac) + P(empty) = 1; 4.5 standard errors, false alarm 6 x 3 x 7e-6 in all.
+// Int pdf + P(Dirac) + P(empty) = 1; 4.5 standard errors, false alarm 25 x 3 x 7e-6 in all.
 TEST_P(TexturedTables, ProbabilitiesAddUpToOne) {
-  const TexturedTable textured = this->textured();
+  const TexturedTable& textured = this->textured();
   const auto bsdf = textured.at(kPoint);
   for (const Vec3& wo : {kOblique, kSteep, kGrazing}) {
     const auto totals = test::sample_totals(bsdf, wo, 200000, 3);
@@ -114,7 +165,7 @@ TEST_P(TexturedTables, ProbabilitiesAddUpToOne) {
 }
 
 TEST_P(TexturedTables, ThroughputIsValueOverDensity) {
-  const TexturedTable textured = this->textured();
+  const TexturedTable& textured = this->textured();
   Rng rng(6, 0);
   for (int k = 0; k < 2000; ++k) {
     const auto bsdf = textured.at(random_parameters(table(), rng));
@@ -136,7 +187,7 @@ TEST_P(TexturedTables, ThroughputIsValueOverDensity) {
 
 // Facets turn the estimate of a very rough film.
 TEST_P(TexturedTables, AlbedoEstimateIsNear) {
-  const TexturedTable textured = this->textured();
+  const TexturedTable& textured = this->textured();
   for (const Vec3& wo : {kOblique, kSteep}) {
     const double expected = mean(TableBsdf(table(), kPoint, OutsideGrid::refuse).albedo(wo));
     EXPECT_NEAR(textured.at(kPoint).albedo(wo), expected, 0.2 * expected) << wo.z;
@@ -144,7 +195,7 @@ TEST_P(TexturedTables, AlbedoEstimateIsNear) {
 }
 
 TEST_P(TexturedTables, Reciprocal) {
-  const TexturedTable textured = this->textured();
+  const TexturedTable& textured = this->textured();
   Rng rng(7, 0);
   for (int k = 0; k < 2000; ++k) {
     const auto bsdf = textured.at(random_parameters(table(), rng));
@@ -156,7 +207,7 @@ TEST_P(TexturedTables, Reciprocal) {
 }
 
 TEST_P(TexturedTables, ParametersOutsideTheGrid) {
-  const TexturedTable textured = this->textured();
+  const TexturedTable& textured = this->textured();
   const Parameters outside{900, 1.2, 0.1}, nearest{700, 1.2, 0.1};
   Rng rng(8, 0);
   EXPECT_EQ(textured.at(outside).eval(kOblique, kSteep, rng),
@@ -172,6 +223,9 @@ TEST_P(TexturedTables, ParametersOutsideTheGrid) {
   }
 }
 
+// What a hit of a scene has room for (runtime/tracer/surface_bsdf.h), with a matrix of colours.
+TEST(TexturedTable, HitsAreSmall) { EXPECT_LE(sizeof(TexturedTable::At), 400u); }
+
 SmallRecipe recipe_of(double roughness, const std::string& transmission, const std::string& spectrum) {
   SmallRecipe recipe;
   recipe.roughness = roughness;
@@ -181,36 +235,71 @@ SmallRecipe recipe_of(double roughness, const std::string& transmission, const s
   return recipe;
 }
 
+SmallRecipe product_of(double roughness, const std::string& transmission, const std::string& spectrum) {
+  SmallRecipe recipe = recipe_of(roughness, transmission, spectrum);
+  recipe.path = "product";
+  return recipe;
+}
+
+SmallRecipe dense_of(double roughness, const std::string& material, const std::string& spectrum,
+                     const std::string& path = "sum") {
+  SmallRecipe recipe = recipe_of(roughness, "refract", spectrum);
+  recipe.material = material;
+  recipe.path = path;
+  recipe.grid = kCoarseGrid;
+  recipe.noise = 0.1;
+  return recipe;
+}
+
+SmallRecipe with_albedo(SmallRecipe recipe, double albedo) {
+  recipe.albedo = albedo;
+  return recipe;
+}
+SmallRecipe with(SmallRecipe recipe, const std::string& material) {
+  recipe.material = material;
+  return recipe;
+}
+
 std::vector<Case> cases() {
-  const std::string full = "mode = \"full\"\n";
-  return {{"rough", recipe_of(0.1, "refract", full)},          {"smooth", recipe_of(0, "refract", full)},
-          {"very_rough", recipe_of(0.5, "refract", full)},     {"straight", recipe_of(0.1, "straight", full)},
-          {"straight_smooth", recipe_of(0, "straight", full)}, {"rgb3", recipe_of(0.2, "refract", "")}};
+  const std::string full = "mode = \"full\"\n", pigment = "absorption_spectrum = \"eumelanin\"\n",
+                    slab = "scattering_per_nm = 0.5\nanisotropy = 0.5\n", lengthwise = "[0.1, 0.3]";
+  return {
+      {"rough", recipe_of(0.1, "refract", full)},
+      {"smooth", recipe_of(0, "refract", full)},
+      {"very_rough", recipe_of(0.5, "refract", full)},
+      {"straight", recipe_of(0.1, "straight", full)},
+      {"straight_smooth", recipe_of(0, "straight", full)},
+      {"rgb3", recipe_of(0.2, "refract", "")},
+      {"white", with_albedo(recipe_of(0.2, "refract", ""), 1)},
+      {"eumelanin", with(recipe_of(0.1, "refract", full), pigment)},
+      {"product", product_of(0.1, "refract", full)},
+      {"product_smooth", product_of(0, "refract", full)},
+      {"product_straight", product_of(0.1, "straight", full)},
+      {"product_rgb3", product_of(0.2, "refract", "")},
+      {"product_white", with_albedo(product_of(0.2, "refract", ""), 1)},
+      {"product_eumelanin", with(product_of(0.1, "refract", full), pigment)},
+      {"anisotropic", recipe_of(0.1, "refract", full), "factored", lengthwise},
+      {"anisotropic_product", product_of(0.1, "refract", ""), "factored", lengthwise},
+      {"dense", dense_of(0.1, "", full), "dense"},
+      {"dense_smooth", dense_of(0, "", ""), "dense"},
+      {"dense_product", dense_of(0.1, pigment, full, "product"), "dense"},
+      {"dense_white", with_albedo(dense_of(0.2, "", ""), 1), "dense"},
+      {"dense_anisotropic", dense_of(0.1, "", ""), "dense", lengthwise, "azimuths = 4\n"},
+      {"dense_without_frame", dense_of(0.1, "", full), "dense", "", "frame = \"none\"\n"},
+      {"slab", dense_of(0.2, slab, full), "dense"},
+      {"slab_smooth", dense_of(0, slab, ""), "dense"},
+      {"multiple_facets", dense_of(0.4, "microfacet = \"multiple\"\n", ""), "dense", "", "azimuths = 3\n"}};
 }
 INSTANTIATE_TEST_SUITE_P(, TexturedTables, ::testing::ValuesIn(cases()),
                          [](const auto& info) { return info.param.name; });
 
-std::string refusal(const Table& table) {
-  try {
-    TexturedTable refused(table);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
-TEST(TexturedTable, NamesWhatIsNotSupported) {
-  EXPECT_THAT(refusal(test::baked({})), HasSubstr("dense"));
-  SmallRecipe product;
-  product.path = "product";
-  EXPECT_THAT(refusal(factored(product)), HasSubstr("product"));
-}
-
 // One node of every parameter.
 TEST(TexturedTable, OnePoint) {
-  const Table table = factored({});
   Rng rng(9, 0);
-  EXPECT_LT(error_at(TexturedTable(table), table, rng), 0.001);
+  for (const std::string encoding : {"factored", "dense"}) {
+    const Table table = baked({"one", {}, encoding});
+    EXPECT_LT(error_at(TexturedTable(table), table, Parameters::of(table.material), rng), 0.001);
+  }
 }
 
 }  // namespace

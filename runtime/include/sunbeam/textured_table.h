@@ -41,6 +41,7 @@ namespace sunbeam {
 
 struct FloatRgb;
 struct TexturedData;
+struct TexturedDenseViewer;
 struct TexturedViewer;
 
 // Copies share the data. Const calls, those of At included, allocate nothing and lock nothing, and may run on
@@ -73,6 +74,9 @@ class TexturedTable {
     At(const TexturedData& data, const Parameters& parameters);
     void fold(std::span<const float> cosines, FloatRgb* reflectance) const;
     EvalPdf eval_pdf(const TexturedViewer& viewer, const Vec3& wo, const Vec3& wi) const;
+    EvalPdf eval_pdf(const TexturedDenseViewer& viewer, const Vec3& wo, const Vec3& wi) const;
+    template <class Viewer>
+    std::optional<BsdfSample> sample_for(const Viewer& viewer, const Vec3& wo, Rng& rng) const;
 
     const TexturedData* data_;
     Parameters parameters_;

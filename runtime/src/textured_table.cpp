@@ -49,12 +49,13 @@ struct TexturedData {
       rest.emplace(table);
     else
       dense.emplace(table);
+    kind = !rest ? Kind::dense : rest->is_plain() ? Kind::plain : Kind::general;
   }
 
-  const EvenAxis& axis(std::size_t k) const { return rest ? rest->axis(k) : dense->axis(k); }
+  const EvenAxis& axis(std::size_t k) const { return kind == Kind::dense ? dense->axis(k) : rest->axis(k); }
   // Of the pigment relative to the parameter, as far as the rest decays with it.
   float mean_absorption() const {
-    if (rest) return rest->absorption()[3];
+    if (kind != Kind::dense) return rest->absorption()[3];
     return material.scatters() || material.has_multiple_facets() ? 0 : 1;
   }
 
@@ -88,6 +89,8 @@ struct TexturedData {
     return static_cast<float>(std::atan2(std::abs(w.y), std::abs(w.x)) * (2 / kPi));
   }
 
+  // Factored, isotropic and of path "sum"; any other factored one; dense.
+  enum class Kind { plain, general, dense } kind;
   Material material;
   std::optional<TexturedRest> rest;    // of a factored table
   std::optional<TexturedDense> dense;  // or of a dense one
@@ -109,7 +112,12 @@ struct TexturedViewer {
   float first_chance;
 };
 
-// The same of a dense table.
+// The same of a table with azimuths or path "product".
+struct TexturedGeneralViewer : TexturedViewer {
+  using TexturedViewer::TexturedViewer;
+};
+
+// And of a dense one.
 struct TexturedDenseViewer {
   TexturedDenseViewer(const TexturedData& data, const Parameters& at, const Vec3& wo)
       : facets(data.facets, wo), rest_albedo(data.dense->rest_albedo(at, std::min(facets.root, 1.0f))) {
@@ -146,10 +154,12 @@ TexturedTable::At TexturedTable::at(const Parameters& parameters, OutsideGrid ou
   return at(parameters);
 }
 
+using Kind = TexturedData::Kind;
+
 TexturedTable::At::At(const TexturedData& data, const Parameters& parameters)
     : data_(&data),
       parameters_(parameters),
-      place_(data.rest ? data.rest->place(parameters) : TexturedPlace{}),
+      place_(data.kind == Kind::dense ? TexturedPlace{} : data.rest->place(parameters)),
       frame_(data.frame, parameters.base_ior, parameters.absorption_per_nm * data.frame.pigment_thickness_nm),
       rest_density_(rest_exponent(frame_, data.mean_absorption())) {}
 
@@ -160,7 +170,7 @@ inline void TexturedTable::At::fold(std::span<const float> cosines, FloatRgb* re
 
 Rgb TexturedTable::At::dirac(const Vec3& wo) const {
   if (!data_->smooth || wo.z <= 0) return {};
-  if (data_->dense) return data_->dense->film_reflectance(parameters_, std::min(wo.z, 1.0));
+  if (data_->kind == Kind::dense) return data_->dense->film_reflectance(parameters_, std::min(wo.z, 1.0));
   const auto cosine = static_cast<float>(wo.z);
   FloatRgb r;
   fold({&cosine, 1}, &r);
@@ -169,7 +179,7 @@ Rgb TexturedTable::At::dirac(const Vec3& wo) const {
 
 double TexturedTable::At::albedo(const Vec3& wo) const {
   if (wo.z <= 0) return 0;
-  if (data_->dense) {
+  if (data_->kind == Kind::dense) {
     const TexturedDenseViewer viewer(*data_, parameters_, wo);
     return double{viewer.first_albedo + viewer.rest_albedo};
   }
@@ -180,8 +190,10 @@ double TexturedTable::At::albedo(const Vec3& wo) const {
   return double{r.r + r.g + r.b} / 3 / double{data_->rest->at(place_, viewer.end.at)[3]};
 }
 
-inline EvalPdf TexturedTable::At::eval_pdf(const TexturedViewer& viewer, const Vec3& wo,
-                                           const Vec3& wi) const {
+template <class Viewer>
+[[gnu::always_inline]] inline EvalPdf TexturedTable::At::factored_eval_pdf(const Viewer& viewer,
+                                                                           const Vec3& wo,
+                                                                           const Vec3& wi) const {
   const TexturedData& data = *data_;
   const FacetPair pair(data.facets, viewer.facets, wo, wi);
   const TexturedRest& nodes = *data.rest;
@@ -196,14 +208,26 @@ inline EvalPdf TexturedTable::At::eval_pdf(const TexturedViewer& viewer, const V
     fold({&half_cosine, 1}, film);
   }
 
-  const Color4 rest = nodes.is_plain()
-                          ? data.rest_factor(place_, frame_, viewer.end, i)
-                          : data.general_factor(parameters_, place_, frame_, viewer.end, i, wo, wi);
+  Color4 rest;
+  if constexpr (std::is_same_v<Viewer, TexturedViewer>)
+    rest = data.rest_factor(place_, frame_, viewer.end, i);
+  else
+    rest = data.general_factor(parameters_, place_, frame_, viewer.end, i, wo, wi);
   const float chance = viewer.first_chance, rest_pdf = (1 - chance) * rest_density_.pdf(pair.cosine);
   if (data.smooth) return {to_rgb(nodes.passing(film[0]) * nodes.passing(film[1]) * rest), double{rest_pdf}};
   const float passing = viewer.end.passing * i.passing;
   const Color4 reflectance{film[0].r, film[0].g, film[0].b, 0};
   return {to_rgb(passing * rest + pair.lobe * reflectance), double{rest_pdf + chance * pair.pdf}};
+}
+
+inline EvalPdf TexturedTable::At::eval_pdf(const TexturedViewer& viewer, const Vec3& wo,
+                                           const Vec3& wi) const {
+  return factored_eval_pdf(viewer, wo, wi);
+}
+
+EvalPdf TexturedTable::At::eval_pdf(const TexturedGeneralViewer& viewer, const Vec3& wo,
+                                    const Vec3& wi) const {
+  return factored_eval_pdf(viewer, wo, wi);
 }
 
 EvalPdf TexturedTable::At::eval_pdf(const TexturedDenseViewer& viewer, const Vec3& wo, const Vec3& wi) const {
@@ -217,14 +241,18 @@ EvalPdf TexturedTable::At::eval_pdf(const TexturedDenseViewer& viewer, const Vec
 
 EvalPdf TexturedTable::At::eval_pdf(const Vec3& wo, const Vec3& wi) const {
   if (wo.z <= 0 || wi.z <= 0) return {};
-  if (data_->dense) return eval_pdf(TexturedDenseViewer(*data_, parameters_, wo), wo, wi);
-  return eval_pdf(TexturedViewer(*data_, place_, frame_, wo), wo, wi);
+  if (data_->kind == Kind::plain) return eval_pdf(TexturedViewer(*data_, place_, frame_, wo), wo, wi);
+  if (data_->kind == Kind::general)
+    return eval_pdf(TexturedGeneralViewer(*data_, place_, frame_, wo), wo, wi);
+  return eval_pdf(TexturedDenseViewer(*data_, parameters_, wo), wo, wi);
 }
 
 std::optional<BsdfSample> TexturedTable::At::sample(const Vec3& wo, Rng& rng) const {
   if (wo.z <= 0) return {};
-  if (data_->dense) return sample_for(TexturedDenseViewer(*data_, parameters_, wo), wo, rng);
-  return sample_for(TexturedViewer(*data_, place_, frame_, wo), wo, rng);
+  if (data_->kind == Kind::plain) return sample_for(TexturedViewer(*data_, place_, frame_, wo), wo, rng);
+  if (data_->kind == Kind::general)
+    return sample_for(TexturedGeneralViewer(*data_, place_, frame_, wo), wo, rng);
+  return sample_for(TexturedDenseViewer(*data_, parameters_, wo), wo, rng);
 }
 
 template <class Viewer>

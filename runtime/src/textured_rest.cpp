@@ -356,7 +356,11 @@ class TexturedRest::Builder {
 
   double first_chance(const FloatRgb& r, double rest, int c) const {
     const double of_first = std::max(0.0, double{r.r + r.g + r.b} / 3);
-    const double of_rest = std::max(0.0, rest) * std::exp(-least_decay_[c] - least_decay_.back());
+    double of_rest = std::max(0.0, rest) * std::exp(-least_decay_[c] - least_decay_.back());
+    if (rest_.is_product())  // the bracket, without X, at a mean cosine of the light
+      of_rest *= one_visit_of_product(depth_ * double{rest_.absorption()[3]},
+                                      material_.cosine_below(cosines_[static_cast<std::size_t>(c)]),
+                                      material_.cosine_below(2.0 / 3));
     return std::clamp(of_first / (of_first + of_rest + kLeastValue), kLeastChance, 1 - kLeastChance);
   }
 

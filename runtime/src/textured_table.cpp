@@ -1,6 +1,7 @@
 #include "sunbeam/textured_table.h"
 
 #include <cmath>
+#include <type_traits>
 
 #include "facets.h"
 #include "sunbeam/core/error.h"

@@ -27,12 +27,8 @@ DenseRest::DenseRest(const Table& table, const Material& material)
   const auto point = Parameters::of(material).values();
   const NdArray sliced = table.remainder.slice(point);
   stderr_ = table.rest_stderr.slice(point);
-  for (std::size_t k = 0; k < 4; ++k) {
-    axes_[k] = sliced.axes()[k];
-    bound_axes_[k] = BoundAxis(axes_[k], sliced.stride(k));
-  }
+  angles_.emplace(sliced, symmetry_);
   for (std::size_t cell = 0; cell < sliced.cells(); ++cell) remainder_.push_back(to_color4(sliced.get(cell)));
-  has_azimuth_ = axes_[1].size() > 1 || axes_[3].size() > 1;
   if (table.frame == FrameKind::none) return;
   frame_.emplace(material, table.first_visit);
   const bool reflects = table.film_transmittance.empty();
@@ -49,39 +45,6 @@ Rgb DenseRest::transmittance(double cosine) const {
   return (1 - at.upper_weight) * transmittance_[at.lower] + at.upper_weight * transmittance_[at.upper];
 }
 
-AngleCoordinates DenseRest::coordinates(const Vec3& wo, const Vec3& wi) const {
-  if (!has_azimuth_) return {wi.z, 0, wo.z, 0};
-  return to_coordinates(symmetry_, {wo, wi});
-}
-
-Rgb DenseRest::remainder(const AngleCoordinates& at) const {
-  const auto i = bound_axes_[0].at(at.cos_i), o = bound_axes_[2].at(at.cos_o);
-  Color4 sum{};
-  if (!has_azimuth_) {
-    for (int a = 0; a < i.count; ++a) {
-      const Color4* row = remainder_.data() + i.offset[a];
-      Color4 of_row{};
-      for (int b = 0; b < o.count; ++b) of_row += o.weight[b] * row[o.offset[b]];
-      sum += i.weight[a] * of_row;
-    }
-    return to_rgb(sum);
-  }
-  const auto phi_i = bound_axes_[1].at(at.phi_i), phi_o = bound_axes_[3].at(at.phi_o);
-  for (int a = 0; a < i.count; ++a)
-    for (int b = 0; b < phi_i.count; ++b) {
-      const Color4* block = remainder_.data() + i.offset[a] + phi_i.offset[b];
-      Color4 of_block{};
-      for (int c = 0; c < o.count; ++c) {
-        const Color4* row = block + o.offset[c];
-        Color4 of_row{};
-        for (int d = 0; d < phi_o.count; ++d) of_row += phi_o.weight[d] * row[phi_o.offset[d]];
-        of_block += o.weight[c] * of_row;
-      }
-      sum += i.weight[a] * phi_i.weight[b] * of_block;
-    }
-  return to_rgb(sum);
-}
-
 Rgb DenseRest::decoded(const Rgb& remainder, double cos_i, double cos_o) const {
   if (frame_) return frame_->decode(remainder, cos_i, cos_o, transmittance(cos_i), transmittance(cos_o));
   if (is_full_) return remainder;
@@ -89,11 +52,11 @@ Rgb DenseRest::decoded(const Rgb& remainder, double cos_i, double cos_o) const {
 }
 
 Rgb DenseRest::operator()(const Vec3& wo, const Vec3& wi) const {
-  return decoded(remainder(coordinates(wo, wi)), wi.z, wo.z);
+  return decoded(remainder(angles_->coordinates(wo, wi)), wi.z, wo.z);
 }
 
 Rgb DenseRest::standard_error(const Vec3& wo, const Vec3& wi) const {
-  const AngleCoordinates c = coordinates(wo, wi);
+  const AngleCoordinates c = angles_->coordinates(wo, wi);
   const Rgb error = stderr_.interpolate(std::array{c.cos_i, c.phi_i, c.cos_o, c.phi_o});
   return transform(error, [](double x) { return std::max(0.0, x); });
 }
@@ -102,7 +65,7 @@ Rgb DenseRest::standard_error(const Vec3& wo, const Vec3& wi) const {
 // wo mirrored stands for wi in the other three.
 DenseRest::AzimuthMean::AzimuthMean(const DenseRest& rest, const Vec3& wo) : rest_(rest), cos_o_(wo.z) {
   const bool isotropic = rest.symmetry_ == Symmetry::isotropic;
-  const Axis& axis = rest.axes_[isotropic ? 3 : 1];
+  const Axis& axis = rest.angles_->axis(isotropic ? 3 : 1);
   const auto weights = mean_weights(axis);
   for (std::size_t k = 0; k < axis.size(); ++k) {
     if (isotropic) {

@@ -4,8 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "bound_axis.h"
-#include "color4.h"
+#include "dense_angles.h"
 #include "sunbeam/table.h"
 
 namespace sunbeam {
@@ -36,19 +35,18 @@ class DenseRest {
 
  private:
   Rgb transmittance(double cosine) const;
-  AngleCoordinates coordinates(const Vec3& wo, const Vec3& wi) const;
-  Rgb remainder(const AngleCoordinates& at) const;
+  Rgb remainder(const AngleCoordinates& at) const {
+    return to_rgb(DenseAngles::Place(*angles_, at).sum(remainder_.data()));
+  }
   Rgb decoded(const Rgb& remainder, double cos_i, double cos_o) const;
 
   Symmetry symmetry_;
   std::optional<RestFrame> frame_;  // none: the array holds the rest itself
   bool is_full_;
   std::vector<Rgb> transmittance_;  // over even cosines
-  std::array<Axis, 4> axes_;        // of the angles, in the order of the table
-  std::array<BoundAxis, 4> bound_axes_;
+  std::optional<DenseAngles> angles_;
   std::vector<Color4> remainder_;
-  NdArray stderr_;    // over the four angles
-  bool has_azimuth_;  // else those axes have one node each, and finding the azimuths would be in vain
+  NdArray stderr_;  // over the four angles
 };
 
 }  // namespace sunbeam

@@ -47,26 +47,40 @@ Rgb decay_of(const Rgb& start, const Rgb& value) {
   return decay;
 }
 
+// RestFrame::FirstVisit.
+std::shared_ptr<const std::vector<Rgb>> even_steps(const NdArray& first_visit) {
+  if (first_visit.empty()) return {};
+  constexpr int kSteps = 1024;  // linear to 1e-5 of a white base, as the array itself
+  std::vector<Rgb> steps;
+  for (int i = 0; i < kSteps; ++i) {
+    const double s = static_cast<double>(i) / kSteps;
+    steps.push_back(first_visit.interpolate(std::array{s / (1 - s)}));
+  }
+  steps.push_back(first_visit.interpolate(std::array{first_visit.axes()[0].high()}));
+  return std::make_shared<const std::vector<Rgb>>(std::move(steps));
+}
+
 }  // namespace
 
-RestFrame::RestFrame(const Material& material, const NdArray& first_visit)
+RestFrame::RestFrame(const Material& material, FirstVisit first_visit)
     : material_(material),
       scale_(material.radiance_scale()),
       least_transmittance_(material.has_multiple_facets() ? kLeastOverMultipleFacets : 0),
-      decays_(!material.scatters() && !material.has_multiple_facets()) {
-  if (first_visit.empty()) return;
-  constexpr int kSteps = 1024;  // linear to 1e-5 of a white base, as the array itself
-  for (int i = 0; i < kSteps; ++i) {
-    const double s = static_cast<double>(i) / kSteps;
-    first_visit_.push_back(first_visit.interpolate(std::array{s / (1 - s)}));
-  }
-  first_visit_.push_back(first_visit.interpolate(std::array{first_visit.axes()[0].high()}));
+      decays_(!material.scatters() && !material.has_multiple_facets()),
+      first_visit_(std::move(first_visit)) {}
+
+RestFrame::RestFrame(const Material& material, const NdArray& first_visit)
+    : RestFrame(material, even_steps(first_visit)) {}
+
+// No counting of owners: threads would wait for each other.
+RestFrame RestFrame::over(const Material& material) const {
+  return {material, FirstVisit(FirstVisit(), first_visit_.get())};
 }
 
 RestFrame::Terms RestFrame::terms(double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const {
   const double m_i = std::max(material_.cosine_below(cos_i), kSmallestCosine);
   const double m_o = std::max(material_.cosine_below(cos_o), kSmallestCosine);
-  Terms t = first_visit_.empty() ? rgb3_terms(m_i, m_o) : folded_terms(m_i, m_o);
+  Terms t = !first_visit_ ? rgb3_terms(m_i, m_o) : folded_terms(m_i, m_o);
   t.front = scale_ * factor(t_i) * factor(t_o);
   if (decays_) return t;
   t.first_visit *= std::exp(-material_.scattering_depth() * (1 / m_i + 1 / m_o));
@@ -77,16 +91,17 @@ RestFrame::Terms RestFrame::terms(double cos_i, double cos_o, const Rgb& t_i, co
 // A transmittance as a factor that the remainder can be divided by. A folded one may be negative.
 Rgb RestFrame::factor(const Rgb& transmittance) const {
   constexpr double kSmallestShare = 0.3;  // of the mean
-  const double share = first_visit_.empty() ? 0 : kSmallestShare * mean(transmittance);
+  const double share = !first_visit_ ? 0 : kSmallestShare * mean(transmittance);
   const double smallest = std::max(share, least_transmittance_);
   return transform(transmittance, [&](double t) { return std::max(t, smallest); });
 }
 
 Rgb RestFrame::first_visit(double optical_path) const {
-  const double position = optical_path / (1 + optical_path) * static_cast<double>(first_visit_.size() - 1);
-  const auto lower = std::min(static_cast<std::size_t>(position), first_visit_.size() - 2);
+  const std::vector<Rgb>& steps = *first_visit_;
+  const double position = optical_path / (1 + optical_path) * static_cast<double>(steps.size() - 1);
+  const auto lower = std::min(static_cast<std::size_t>(position), steps.size() - 2);
   const double t = position - static_cast<double>(lower);
-  return (1 - t) * first_visit_[lower] + t * first_visit_[lower + 1];
+  return (1 - t) * steps[lower] + t * steps[lower + 1];
 }
 
 RestFrame::Terms RestFrame::rgb3_terms(double m_i, double m_o) const {
@@ -100,14 +115,14 @@ RestFrame::Terms RestFrame::folded_terms(double m_i, double m_o) const {
   const Rgb at_sum = material_.absorption_path == AbsorptionPath::sum
                          ? one_visit
                          : first_visit(material_.optical_depth() * (1 / m_i + 1 / m_o));
-  return {{}, kInvPi * one_visit, decay_of(first_visit_.front(), at_sum)};
+  return {{}, kInvPi * one_visit, decay_of(first_visit_->front(), at_sum)};
 }
 
 Rgb RestFrame::decode(const Rgb& remainder, double cos_i, double cos_o, const Rgb& t_i,
                       const Rgb& t_o) const {
   const Terms t = terms(cos_i, cos_o, t_i, t_o);
   const Rgb rest = t.front * (t.first_visit + t.decay * remainder);
-  if (!first_visit_.empty()) return rest;
+  if (first_visit_) return rest;
   return transform(rest, [](double x) { return std::max(0.0, x); });
 }
 

@@ -1,4 +1,4 @@
-// The rest of a factored table of path "sum" over all its parameters: the array L of textured_table.h.
+// The rest of a factored table over all its parameters: the arrays L and X of textured_table.h.
 #pragma once
 
 #include <array>
@@ -17,6 +17,10 @@ class TexturedRest {
   explicit TexturedRest(const Table& table);
 
   static constexpr int kCosines = 13;  // even roots
+
+  // Isotropic and of path "sum": L says all, whatever the azimuth.
+  bool is_plain() const { return phis_ == 1 && pairs_.empty(); }
+  bool is_product() const { return !pairs_.empty(); }
 
   TexturedPlace place(const Parameters& at) const;
 
@@ -46,6 +50,23 @@ class TexturedRest {
     return low[0] + w.path.upper_weight * (low[1] - low[0]);
   }
 
+  // The same of an anisotropic film; `phi` is the azimuth folded into a quadrant, over pi/2.
+  Color4 at(const TexturedPlace& place, const Direction& w, float phi) const {
+    if (phis_ == 1) return at(place, w);
+    const EvenPosition azimuth(phi, phis_);
+    TexturedPlace lower = place, upper = place;
+    lower.row += static_cast<std::size_t>(azimuth.lower * kCosines);
+    upper.row = lower.row + kCosines;
+    const Color4 low = at(lower, w);
+    return low + azimuth.upper_weight * (at(upper, w) - low);
+  }
+
+  // X of two directions, each the root of its cosine and phi as above.
+  struct PairEnd {
+    float root, phi;
+  };
+  Color4 exchange(const Parameters& at, const PairEnd& o, const PairEnd& i) const;
+
   // The chance of sampling the first surface, from the nearest parameters: they are given, and so the choice
   // need not change smoothly with them.
   float first_chance(const TexturedPlace& place, const Direction& w) const {
@@ -72,16 +93,25 @@ class TexturedRest {
   const FilmSpectrum& film() const { return film_; }
   const Color4& absorption() const { return absorption_; }
   const EvenAxis& axis(std::size_t k) const { return axes_[k]; }
-  std::size_t bytes() const { return nodes_.size() * sizeof(Color4); }
+  std::size_t bytes() const { return (nodes_.size() + pairs_.size()) * sizeof(Color4); }
 
  private:
   static constexpr float kLeastPassing = 1e-4f;
 
   class Builder;
 
+  // Neighbours of a direction among those of pairs_, and their weights.
+  struct PairTaps {
+    std::array<int, 4> node;
+    std::array<float, 4> weight;
+    int count;
+  };
+  PairTaps taps(const PairEnd& end) const;
+  int pair_ends() const { return pair_cosines_ * pair_phis_; }
+
   // At the first path and cosine.
   std::size_t row(int base_ior, int absorption) const {
-    return static_cast<std::size_t>((base_ior * axes_[2].size() + absorption) * kCosines);
+    return static_cast<std::size_t>((base_ior * axes_[2].size() + absorption) * phis_ * kCosines);
   }
   double path_nm(int node) const {
     return per_extent_ > 0 ? first_path_ + node / ((paths_ - 1) * double{per_extent_}) : double{first_path_};
@@ -89,13 +119,18 @@ class TexturedRest {
 
   FilmSpectrum film_;
   std::array<EvenAxis, 3> axes_;  // of the parameters, in the order of kParameterNames
+  int phis_;                      // even azimuths in a quadrant; 1 for an isotropic film
   int paths_;
   float first_path_, per_extent_ = 0;  // nodes are even in thickness times path
   int stride_;                         // from path to path, in nodes
   std::array<int, 4> corner_;          // distance of a place's rows from the first
   FloatRgb total_;                     // the fold of 1
   Color4 absorption_;                  // a of each channel, and their mean
-  std::vector<Color4> nodes_;          // (path, base_ior, absorption_per_nm, root of the cosine)
+  std::vector<Color4> nodes_;          // (path, base_ior, absorption_per_nm, phi, root of the cosine)
+  // Path "product" only: (film_thickness_nm, base_ior, absorption_per_nm, direction, direction), directions
+  // as (phi, root of the cosine).
+  std::vector<Color4> pairs_;
+  int pair_cosines_ = 0, pair_phis_ = 0;
 };
 
 }  // namespace sunbeam

@@ -147,6 +147,35 @@ void textured_sample(benchmark::State& state) {
   }
 }
 
+// Kinds without a fast path, over a few nodes of the parameters.
+const TexturedTable& textured_table(const std::vector<std::string>& overrides) {
+  static std::map<std::string, TexturedTable> cache;
+  std::vector<std::string> all = {"accuracy.noise=0.1", "grid.film_thickness_nm={from=0, to=1500, count=5}",
+                                  "grid.base_ior={from=1, to=2, count=4}",
+                                  "grid.absorption_per_nm={from=0, to=1.5, count=4}"};
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  const Recipe recipe = load_recipe(SUNBEAM_SOURCE_DIR "/tables/recipes/sunbeam.toml", all);
+  if (!cache.count(recipe.text))
+    cache.try_emplace(recipe.text, bake_table(recipe, {.seed = 1, .threads = 0, .on_progress = {}}));
+  return cache.at(recipe.text);
+}
+
+void textured_kind(benchmark::State& state, const std::vector<std::string>& overrides) {
+  const TexturedTable& textured = textured_table(overrides);
+  const auto pairs = random_pairs();
+  const auto parameters = random_parameters();
+  std::size_t k = 0;
+  for (auto _ : state) {
+    const Pair& pair = pairs[k % kPairs];
+    benchmark::DoNotOptimize(textured.at(parameters[k++ % kPairs]).eval_pdf(pair.wo, pair.wi));
+  }
+}
+const std::vector<std::string> kTexturedProduct = {"material.absorption_path=product"},
+                               kTexturedAnisotropic = {"material.roughness=[0.1, 0.3]"},
+                               kTexturedDense = {"table.encoding=dense"},
+                               kTexturedSlab = {"table.encoding=dense", "material.scattering_per_nm=0.5",
+                                                "table.azimuths=7"};
+
 // Both of one pair at once, and the values of 256 lights for one viewer, a light.
 void bound_eval_pdf(benchmark::State& state) {
   const auto& bsdf = static_cast<const TableBsdf&>(table_bsdf());
@@ -214,6 +243,10 @@ BENCHMARK(bind);
 BENCHMARK(load);
 BENCHMARK(textured_eval_pdf);
 BENCHMARK(textured_sample);
+BENCHMARK_CAPTURE(textured_kind, product, kTexturedProduct);
+BENCHMARK_CAPTURE(textured_kind, anisotropic, kTexturedAnisotropic);
+BENCHMARK_CAPTURE(textured_kind, dense, kTexturedDense);
+BENCHMARK_CAPTURE(textured_kind, slab, kTexturedSlab);
 
 }  // namespace
 }  // namespace sunbeam

@@ -31,6 +31,7 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -116,10 +117,17 @@ class RestFrame {
   // `first_visit` as in Table: empty for rgb3.
   explicit RestFrame(const Material& material, const NdArray& first_visit = {});
 
+  // The same over another material; allocates nothing and lives no longer than this one.
+  RestFrame over(const Material& material) const;
+
   Rgb decode(const Rgb& remainder, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
   Rgb encode(const Rgb& rest, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
 
  private:
+  // F at even steps of x / (1 + x) from 0 to 1: no search, no root; none for rgb3.
+  using FirstVisit = std::shared_ptr<const std::vector<Rgb>>;
+  RestFrame(const Material& material, FirstVisit first_visit);
+
   struct Terms {
     Rgb front;        // s T T
     Rgb first_visit;  // in brackets, first term
@@ -135,8 +143,7 @@ class RestFrame {
   double scale_;
   double least_transmittance_;
   bool decays_;
-  std::vector<Rgb>
-      first_visit_;  // F at even steps of x / (1 + x) from 0 to 1: no search, no root; empty for rgb3
+  FirstVisit first_visit_;
 };
 
 }  // namespace sunbeam

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "sunbeam/material.h"
@@ -39,6 +40,11 @@ struct TexturedFrame {
   // m~^2.
   float pigment_cosine_squared(float c) const {
     return std::max(below_scale * c * c + below_offset, 0.0f) + least_below;
+  }
+
+  // Below the film, kept above 0.
+  float cosine_below(float c) const {
+    return std::sqrt(std::max(below_scale * c * c + below_offset, 1e-12f));
   }
 
   float below_scale, below_offset, least_below;  // the first two give the cosine below the film

@@ -1,30 +1,40 @@
 // A table whose parameters change at every hit: film thickness, base IOR and absorption come from textures.
 // Made once from a loaded table, in a fraction of a second; at() then only finds its place in the grid.
 //
-// For factored tables (factors.h) of isotropic films with absorption path "sum". Both parts of f = first +
-// rest are those of table.h and TableBsdf.
+// Of every table. Both parts of f = first + rest are those of table.h and TableBsdf.
 //
-// First surface: closed form, with the film's reflectance folded at the half angle by FilmSpectrum.
-// Rest: at each wavelength it is g A(wi) A(wo) (factors.h). The folded sum is taken as a product of the same
-// form, which is exact where A(wi) does not vary within a channel, and right in the mean over wo everywhere:
+// Dense: the table's own arrays, interpolated at the parameters and directions as bind() would; what differs
+// is rounding.
 //
-//   rest = B(wi) B(wo),   B(w) = fold(g A* A(w)) / sqrt(fold(g A* A*)),   A* = Int A(w) cos dw.
+// Factored (factors.h): the first surface is in closed form, with the film's reflectance folded at the half
+// angle by FilmSpectrum. The rest is at each wavelength g A(wi) A(wo), times a bracket V(wi, wo) with path
+// "product". The folded sum is taken as a product of the same form,
+//
+//   rest = B(wi) B(wo) [1 with path "sum", V1 + X with "product"],
+//   B(w) = fold(g A* A(w)) / sqrt(fold(g A* A*)),   A* = Int A(w) cos dw,
+//
+// which with path "sum" is exact where A(wi) does not vary within a channel, and right in the mean over wo
+// everywhere. With "product", V1 is one visit of the base at the channel's mean absorption, and X, an array
+// over the parameters and both directions, what is left: the sum is right at its nodes.
 //
 // What decays stays in closed form, and so do a smooth film's fringes; an array of L holds what is left,
 //
 //   B(w) = P exp(L - a tau / m~),   P = fold(1 - R) at c for a smooth film, 1 - (1 - c~)^5 for a rough one,
 //
-// over (path, base IOR, absorption, cosine), all linear between nodes that are even in the path and in the
-// roots of the others. The path is the thickness, for a rough film times the cosine in the film over that at
-// normal incidence: at a fixed path its fringes stand still. c~ and m~, the cosines outside and below the
-// film, are kept away from 0 by the roughness; a is the mean absorption of the channel relative to that of
-// the parameter. A fourth lane of L is the chance of sampling the first surface, taken at the nearest
-// parameters.
+// over (path, base IOR, absorption, azimuth, cosine), all linear between nodes that are even in the path, in
+// the azimuth of an anisotropic film and in the roots of the others. The path is the thickness, for a rough
+// film times the cosine in the film over that at normal incidence: at a fixed path its fringes stand still.
+// c~ and m~, the cosines outside and below the film, are kept away from 0 by the roughness; a is the mean
+// absorption of the channel relative to that of the parameter. A fourth lane of L is the chance of sampling
+// the first surface, taken at the nearest parameters.
 //
 // sample mixes bounded visible normals (ggx.h; for a smooth film its mirror direction, a Dirac), and for the
 // rest two densities proportional to powers of cos(theta_i), which grow with the absorption. The choice
 // follows estimates of both albedos. pdf is the exact density of that mixture. What normals send below the
 // horizon is empty.
+//
+// Factored isotropic tables of path "sum" are the fast kind; the others take several times as long, dense
+// ones more than a microsecond (bench_runtime, textured_*).
 #pragma once
 
 #include <memory>
@@ -41,13 +51,15 @@ namespace sunbeam {
 
 struct FloatRgb;
 struct TexturedData;
+struct TexturedDenseViewer;
+struct TexturedGeneralViewer;
 struct TexturedViewer;
 
 // Copies share the data. Const calls, those of At included, allocate nothing and lock nothing, and may run on
 // any number of threads.
 class TexturedTable {
  public:
-  // Throws Error naming what is not supported.
+  // Takes what it needs of `table`, which need not outlive it.
   explicit TexturedTable(const Table& table);
 
   // The BSDF at one parameter point; lives no longer than its table.
@@ -73,6 +85,12 @@ class TexturedTable {
     At(const TexturedData& data, const Parameters& parameters);
     void fold(std::span<const float> cosines, FloatRgb* reflectance) const;
     EvalPdf eval_pdf(const TexturedViewer& viewer, const Vec3& wo, const Vec3& wi) const;
+    EvalPdf eval_pdf(const TexturedGeneralViewer& viewer, const Vec3& wo, const Vec3& wi) const;
+    EvalPdf eval_pdf(const TexturedDenseViewer& viewer, const Vec3& wo, const Vec3& wi) const;
+    template <class Viewer>
+    EvalPdf factored_eval_pdf(const Viewer& viewer, const Vec3& wo, const Vec3& wi) const;
+    template <class Viewer>
+    std::optional<BsdfSample> sample_for(const Viewer& viewer, const Vec3& wo, Rng& rng) const;
 
     const TexturedData* data_;
     Parameters parameters_;

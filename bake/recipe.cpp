@@ -171,8 +171,8 @@ void read_albedo(const ConfigTable& config, Spectrum& spectrum, Material& materi
   }
 }
 
-// Enough for the material's rest: a factored one is smooth in azimuth, but must be right to 0.1 %; a dense one
-// pays for each.
+// Enough for the material's rest: a factored one is smooth in azimuth, but must be right to 0.1 %; a dense
+// one pays for each.
 int default_azimuths(const Material& material) {
   if (material.is_plain()) return 1;
   if (material.roughness.is_isotropic()) return 9;

@@ -5,7 +5,7 @@
 namespace sunbeam {
 namespace {
 
-constexpr double kNodesPerFringe = 10;  // of the shortest wavelength
+constexpr double kNodesPerFringe = 12;  // of the shortest wavelength
 constexpr int kLeastThicknesses = 9;
 constexpr int kIorNodes = 12, kAbsorptionNodes = 12;
 constexpr int kPhis = 7;  // of an anisotropic film

@@ -98,7 +98,8 @@ TEST(Bake, AzimuthsOfAnIsotropicFilmAgree) {
 Recipe anisotropic() {
   test::SmallRecipe recipe = gridded();
   recipe.grid = "absorption_per_nm = [0.1, 0.2]";
-  return parse_recipe(recipe.text(), "anisotropic", {"material.roughness=[0.1, 0.4]", "table.angles=4"});
+  return parse_recipe(recipe.text(), "anisotropic",
+                      {"material.roughness=[0.1, 0.4]", "table.angles=4", "table.azimuths=8"});
 }
 
 Table bake_anisotropic(int threads) {

@@ -283,7 +283,7 @@ std::vector<Case> plain_cases() {
           {"straight", recipe_of(0.1, "straight", full)},
           {"white", with_albedo(recipe_of(0.2, "refract", ""), 1)},
           // Thin films over a base without contrast, at grazing.
-          bounded({"rgb3", recipe_of(0.2, "refract", "")}, 0.001, 0.015, 0.01, 100),
+          bounded({"rgb3", recipe_of(0.2, "refract", "")}, 0.001, 0.01, 0.01, 100),
           // Fringes of the thickest film, standing free, at grazing.
           bounded(smooth, 0.001, 0.01, 0.06, 100),
           bounded(straight, 0.001, 0.01, 0.06, 100),

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The pictures of docs/figures.md: bash docs/figures.sh [--size WIDTHxHEIGHT] [--spp N] [--only NAME] [--out FOLDER]
-# --size and --spp replace each picture's (each cell's, in a montage) own; NAME: fig1 fig4 fig5 fig6 spectrum sheets.
+# --size and --spp replace each picture's (each cell's, in a montage) own; NAME: bands fig1 fig4 fig5 fig6 spectrum sheets.
 # Needs build/release/bin/sunbeam (bash cmake/demo.sh). Tables, .exr files and the numbers of the captions (numbers_fig5.md, numbers_fig6.md) stay in build/figures.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -17,8 +17,8 @@ while [ $# -gt 0 ]; do
   shift 2
 done
 case $only in
-  '' | fig1 | fig4 | fig5 | fig6 | spectrum | sheets) ;;
-  *) echo "--only: found '$only'; allowed: fig1, fig4, fig5, fig6, spectrum, sheets" >&2; exit 2 ;;
+  '' | bands | fig1 | fig4 | fig5 | fig6 | spectrum | sheets) ;;
+  *) echo "--only: found '$only'; allowed: bands, fig1, fig4, fig5, fig6, spectrum, sheets" >&2; exit 2 ;;
 esac
 
 sunbeam=build/release/bin/sunbeam
@@ -73,6 +73,11 @@ bake_default() { bake "$work/skin.exr" tables/recipes/sunbeam.toml; }
 bake_black() {
   bake "$work/albedo0.exr" tables/recipes/sunbeam.toml --set material.albedo=0 \
     --set 'grid.base_ior=[1.0, 2.0]' --set 'grid.absorption_per_nm=[0.0, 0.7]'
+}
+
+bands() {
+  render bands tables/scenes/snake_bands.toml 900x560 200
+  montage bands 1 "$work/bands.png"
 }
 
 fig1() {
@@ -154,7 +159,7 @@ sheets() {
 
 bake_default
 case ${only:-all} in fig5 | fig6 | all) bake_black ;; esac
-for figure in ${only:-fig1 fig4 fig5 fig6 spectrum sheets}; do
+for figure in ${only:-bands fig1 fig4 fig5 fig6 spectrum sheets}; do
   rm -f "$work/numbers_$figure.md"
   start=$SECONDS
   "$figure"

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <array>
 #include <charconv>
 #include <chrono>
 #include <nlohmann/json.hpp>
@@ -47,20 +46,19 @@ ImageSize parse_size(const std::string& text) {
 // X0,Y0,X1,Y1; the size of the whole picture is filled in by render().
 PixelWindow parse_crop(const std::string& text) {
   PixelWindow crop;
-  const std::array<int*, 4> numbers = {&crop.x0, &crop.y0, &crop.x1, &crop.y1};
   const char *at = text.data(), *end = at + text.size();
-  for (int* number : numbers) {
-    if (number != numbers[0] && (at == end || *at++ != ',')) at = nullptr;
-    const auto read =
-        at ? std::from_chars(at, end, *number) : std::from_chars_result{end, std::errc::invalid_argument};
-    if (read.ec != std::errc())
+  const auto read = [&](int& number, bool is_last) {
+    const auto result = std::from_chars(at, end, number);
+    const bool ends_well = is_last ? result.ptr == end : result.ptr != end && *result.ptr == ',';
+    if (result.ec != std::errc() || !ends_well)
       throw Error(
           fmt::format("--crop: found '{}'; allowed: X0,Y0,X1,Y1 in pixels from the top left corner", text));
-    at = read.ptr;
-  }
-  if (at != end)
-    throw Error(
-        fmt::format("--crop: found '{}'; allowed: X0,Y0,X1,Y1 in pixels from the top left corner", text));
+    at = result.ptr + (is_last ? 0 : 1);
+  };
+  read(crop.x0, false);
+  read(crop.y0, false);
+  read(crop.x1, false);
+  read(crop.y1, true);
   return crop;
 }
 

@@ -1,26 +1,9 @@
 // Look-ups of textured parameters do not touch the heap: this program counts every allocation.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
 #include "sunbeam/textured_table.h"
+#include "tests/support/count_allocations.h"
 #include "tests/table/factored_tables.h"
-
-namespace {
-
-std::atomic<long> allocations = 0;
-
-}  // namespace
-
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace sunbeam {
 namespace {

@@ -29,10 +29,13 @@ class Cell {
                      [count](double variance) { return std::sqrt(std::max(0.0, variance) / (count - 1)); });
   }
 
-  // The stop rule: mean over channels known to `noise` of its value, or of kDarkestValue.
-  bool is_known(double noise, double count) const {
-    return mean(standard_error(count)) <= noise * std::max(mean_abs(mean_of(count)), kDarkestValue);
+  // Of the mean over channels, relative to its value or to kDarkestValue.
+  double relative_error(double count) const {
+    return mean(standard_error(count)) / std::max(mean_abs(mean_of(count)), kDarkestValue);
   }
+
+  // The stop rule.
+  bool is_known(double noise, double count) const { return relative_error(count) <= noise; }
 
  private:
   static Rgb square_each(const Rgb& x) { return x * x; }

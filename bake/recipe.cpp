@@ -179,6 +179,9 @@ int default_azimuths(const Material& material) {
   return material.scatters() || material.has_multiple_facets() ? 8 : 16;
 }
 
+// Only the noisiest cells have it, so the worst points of a table may take a good share of their tolerance.
+double default_noise(double tolerance_p99) { return std::clamp(tolerance_p99 / 4, 1e-6, 0.005); }
+
 // As many as the material's rest needs: see recipe.h.
 int read_azimuths(const ConfigTable& config, const Material& material) {
   constexpr const char* kAzimuths = "azimuths";
@@ -227,12 +230,18 @@ Recipe parse_recipe(const std::string& text, const std::string& name,
   recipe.table.values = static_cast<TableValues>(table.choice("values", {"auto", "walks"}, 0));
 
   const ConfigTable accuracy = config.table("accuracy");
-  recipe.accuracy.noise = accuracy.number("noise", {1e-4, 1}, recipe.accuracy.noise);
   recipe.accuracy.tolerance_median =
       accuracy.number("tolerance_median", {1e-6, 10}, recipe.accuracy.tolerance_median);
   recipe.accuracy.tolerance_p99 = accuracy.number("tolerance_p99", {1e-6, 10}, recipe.accuracy.tolerance_p99);
+  recipe.accuracy.noise = accuracy.number("noise", {1e-6, 1}, default_noise(recipe.accuracy.tolerance_p99));
   if (accuracy.choice("estimator", {"unidirectional", "bidirectional"}, 0) == 1)
     recipe.accuracy.estimator = Estimator::bidirectional;
+
+  recipe.accuracy.interpolation = accuracy.number("interpolation", {0, 1}, 0);
+
+  const ConfigTable limits = config.table("limits");
+  recipe.limits.megabytes = limits.number("megabytes", {0.001, 1e6}, recipe.limits.megabytes);
+  recipe.limits.cpu_minutes = limits.number("cpu_minutes", {0.001, 1e6}, recipe.limits.cpu_minutes);
 
   config.finish();
   recipe.text = config.canonical_text();

@@ -44,11 +44,20 @@ struct Recipe {
   } table;
 
   struct {
-    double noise = 0.005;            // target relative standard error of a tabulated value
+    // Relative standard error allowed of any tabulated value; unless given, a quarter of tolerance_p99, at
+    // most 0.005.
+    double noise = 0.005;
     double tolerance_median = 0.01;  // of verify's error
     double tolerance_p99 = 0.05;
     Estimator estimator = Estimator::pfmc;  // or bidirectional
+    // Error allowed between nodes, which the plan (plan.h) refines until it holds; 0: nodes as they are.
+    double interpolation = 0;
   } accuracy;
+
+  struct {
+    double megabytes = 64;    // of a table's arrays, uncompressed
+    double cpu_minutes = 30;  // of the bake, as BakeJob::cost estimates it
+  } limits;                   // of the plan
 
   Spectrum spectrum;  // [spectrum], with albedo and absorption_spectrum of [material]
 

@@ -7,6 +7,7 @@
 #include "bake/live/pfmc.h"
 #include "bake/live/slab_solver.h"
 #include "bake/parallel_tasks.h"
+#include "bake/table_around.h"
 #include "sunbeam/table_bsdf.h"
 
 namespace sunbeam {
@@ -68,15 +69,18 @@ WalkedRest walk_rest(const Pfmc& model, Technique technique, const Vec3& wi, con
 
 class PointCheck {
  public:
-  PointCheck(const Table& table, const Spectrum& spectrum, const VerifySettings& settings,
-             std::uint64_t index)
+  PointCheck(const Table& table, const DenseCells* cells, const Spectrum& spectrum,
+             const VerifySettings& settings, std::uint64_t index)
       : settings_(settings), rng_(settings.seed, index) {
     point_.parameters = {draw(table.parameter_axis(0), rng_), draw(table.parameter_axis(1), rng_),
                          draw(table.parameter_axis(2), rng_)};
     point_.cos_i = lerp(rng_.uniform(), std::cos(89 * kPi / 180), 1);
     if (table.symmetry == Symmetry::anisotropic) point_.phi_i = 2 * kPi * rng_.uniform();
     wi_ = direction_from_cosine(point_.cos_i, point_.phi_i);
-    bsdf_.emplace(table, point_.parameters, OutsideGrid::refuse);
+    if (cells)
+      bsdf_.emplace(table_around(table, *cells, point_.parameters), point_.parameters, OutsideGrid::refuse);
+    else
+      bsdf_.emplace(table, point_.parameters, OutsideGrid::refuse);
     wavelengths_ = spectrum.wavelengths(bsdf_->material());
     model_.emplace(bsdf_->material(), wavelengths_);
   }
@@ -211,14 +215,16 @@ Estimator default_truth(const Recipe& recipe) {
   return recipe.material.scatters() ? recipe.accuracy.estimator : Estimator::pfmc;
 }
 
-VerifyReport verify(const Table& table, const VerifySettings& settings) {
+namespace {
+
+VerifyReport verify(const Table& table, const DenseCells* cells, const VerifySettings& settings) {
   estimator_for_truth(settings.truth, table.material);  // throws if it has none
   const Spectrum spectrum = parse_recipe(table.info.at("recipe"), "recipe of the table").spectrum;
   VerifyReport report;
   report.truth = name_of(settings.truth);
   report.points.resize(static_cast<std::size_t>(settings.points));
   run_parallel_tasks(report.points.size(), settings.threads, settings.on_progress, [&](std::size_t k) {
-    report.points[k] = PointCheck(table, spectrum, settings, k).run();
+    report.points[k] = PointCheck(table, cells, spectrum, settings, k).run();
   });
   report.error = quantiles(report.points, &VerifyPoint::error);
   report.rest_error = quantiles(report.points, &VerifyPoint::rest_error);
@@ -227,6 +233,16 @@ VerifyReport verify(const Table& table, const VerifySettings& settings) {
   report.energy_max = quantiles(report.points, &VerifyPoint::albedo).max;
   report.reciprocity_max = quantiles(report.points, &VerifyPoint::reciprocity).max;
   return report;
+}
+
+}  // namespace
+
+VerifyReport verify(const Table& table, const VerifySettings& settings) {
+  return verify(table, nullptr, settings);
+}
+
+VerifyReport verify(const Table& outline, const DenseCells& cells, const VerifySettings& settings) {
+  return verify(outline, &cells, settings);
 }
 
 bool within_tolerance(const VerifyReport& report, const VerifySettings& settings) {

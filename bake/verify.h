@@ -17,6 +17,7 @@
 #include "bake/estimator.h"
 #include "bake/recipe.h"
 #include "sunbeam/table.h"
+#include "sunbeam/table_io.h"
 
 namespace sunbeam {
 
@@ -61,6 +62,8 @@ Estimator default_truth(const Recipe& recipe);
 // Throws Error if the recipe in the table cannot be read, or naming the key if truth is exact and the
 // material has no exact evaluator.
 VerifyReport verify(const Table& table, const VerifySettings& settings);
+// Of a table that is not in memory (sunbeam/table_io.h): the same figures.
+VerifyReport verify(const Table& outline, const DenseCells& cells, const VerifySettings& settings);
 
 // True if median and p99 of the error are within the tolerances.
 bool within_tolerance(const VerifyReport& report, const VerifySettings& settings);

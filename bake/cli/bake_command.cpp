@@ -1,79 +1,149 @@
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <optional>
+
 #include "bake/cli/commands.h"
-#include "bake/cli/progress.h"
-#include "bake/recipe.h"
+#include "bake/cli/finish_bake.h"
+#include "bake/cli/interrupt.h"
 #include "bake/sweep.h"
-#include "bake/verify.h"
+#include "bake/version.h"
+#include "bake/work_folder.h"
+#include "sunbeam/core/error.h"
 #include "sunbeam/core/file.h"
-#include "sunbeam/core/text.h"
 #include "sunbeam/table_vdb.h"
 
 namespace sunbeam {
 namespace {
 
-constexpr int kVerifyPoints = 250;
+constexpr int kVerifyPoints = 250, kPreviewPoints = 16;
+constexpr int kInterrupted = 130;  // as a shell reports Ctrl-C
 
-// Stores the figures of `sunbeam verify TABLE --points 250` in the table. True if within the tolerances.
-bool measure_error(const Recipe& recipe, int threads, Table& table) {
-  VerifySettings settings;
-  settings.points = kVerifyPoints;
-  settings.truth = default_truth(recipe);
-  settings.threads = threads;
-  settings.tolerance_median = recipe.accuracy.tolerance_median;
-  settings.tolerance_p99 = recipe.accuracy.tolerance_p99;
-  settings.on_progress = Progress("verify", "points", kVerifyPoints);
-  const VerifyReport report = verify(table, settings);
-  for (const auto& [name, value] : figures(report)) table.info["error." + name] = to_text(value);
-  table.info["error.truth"] = report.truth;
-  fmt::print(stderr, "error median {:.3g} p99 {:.3g} (noise floor {:.3g}), measured at {} points by {}\n",
-             report.error.median, report.error.p99, report.noise_floor.median, kVerifyPoints, report.truth);
-  return within_tolerance(report, settings);
-}
-
-void announce(const BakeOptions& options, const Recipe& recipe, Encoding encoding) {
+void announce(const Recipe& recipe, Encoding encoding) {
   if (encoding == Encoding::factored) {
     fmt::print(stderr, "{}: factored, {} cosines, {} base IORs, {} absorptions, values by shared walks\n",
-               options.recipe, recipe.table.angles, recipe.grid[1].size(), recipe.grid[2].size());
+               recipe.name, recipe.table.angles, recipe.grid[1].size(), recipe.grid[2].size());
     return;
   }
-  fmt::print(stderr, "{}: dense, {} parameter nodes, {} x {} cosines, {} azimuths, values by {}\n",
-             options.recipe, recipe.grid[0].size() * recipe.grid[1].size() * recipe.grid[2].size(),
-             recipe.table.angles, recipe.table.angles, recipe.table.azimuths, dense_method(recipe));
+  fmt::print(stderr, "{}: dense, {} parameter nodes, {} x {} cosines, {} azimuths\n", recipe.name,
+             recipe.grid[0].size() * recipe.grid[1].size() * recipe.grid[2].size(), recipe.table.angles,
+             recipe.table.angles, recipe.table.azimuths);
 }
 
-Table bake_and_measure(const BakeOptions& options, const Recipe& recipe) {
-  const auto encodings = encodings_of(recipe);
-  for (const Encoding encoding : encodings) require_reasonable_size(recipe, encoding);
-  for (const Encoding encoding : encodings) {
-    announce(options, recipe, encoding);
-    SweepSettings settings;
-    settings.seed = options.seed;
-    settings.threads = options.threads;
-    settings.on_progress = Progress("bake", "%", 100);
-    Table table = bake_table(recipe, encoding, settings);
-    const bool good = measure_error(recipe, options.threads, table);
-    if (encodings.size() > 1)
-      fmt::print(stderr, "encoding auto: {} {} the tolerances (median {:g}, p99 {:g})\n", name_of(encoding),
-                 good ? "is the smallest that meets" : "misses", recipe.accuracy.tolerance_median,
-                 recipe.accuracy.tolerance_p99);
-    if (good || encoding == encodings.back()) return table;
+class BakeCommand {
+ public:
+  explicit BakeCommand(const BakeOptions& options)
+      : options_(options),
+        form_(options.progress == "json" ? ProgressForm::json : ProgressForm::text),
+        asked_(load_recipe(options.recipe, options.overrides)) {
+    if (options.preview) asked_ = preview_of(asked_);
+    for (const Encoding encoding : encodings_of(asked_)) require_reasonable_size(asked_, encoding);
+    require_writable(options.output);
+    work_.emplace(options.output, options.resume);
   }
-  return {};
-}
+
+  int run() {
+    make_plan();
+    for (const Encoding encoding : encodings_of(plan_.recipe))
+      require_reasonable_size(plan_.recipe, encoding);
+    return options_.shards > 0 ? bake_part() : bake_table();
+  }
+
+ private:
+  void make_plan() {
+    plan_ = {asked_, ""};
+    if (asked_.accuracy.interpolation == 0) return;
+    if (auto saved = work_->saved_plan(asked_, options_.seed)) {
+      plan_ = *saved;
+    } else {
+      PlanSettings settings{options_.seed, options_.threads, {}};
+      settings.on_step = [](const std::string& axis, std::size_t nodes, double error) {
+        fmt::print(stderr, "plan: {}, {} nodes: error {:.2g} between them\n", axis, nodes, error);
+      };
+      plan_ = plan_bake(asked_, settings);
+      work_->save(plan_, asked_, options_.seed);
+    }
+    fmt::print(stderr, "plan: {}\n", plan_.summary);
+  }
+
+  std::unique_ptr<Journal> journal_of(Encoding encoding) const {
+    const int shards = std::max(1, options_.shards), shard = options_.shards > 0 ? options_.shard - 1 : 0;
+    const BakeIdentity identity{
+        kToolVersion, asked_.hash, plan_.recipe.text, name_of(encoding), options_.seed,
+        shard,        shards,      plan_.summary};
+    auto journal = Journal::open(work_->journal_path(name_of(encoding)), identity);
+    if (journal->damaged_bytes() > 0)
+      fmt::print(stderr, "{}: its last {} bytes are no whole block and are baked again\n", journal->path(),
+                 journal->damaged_bytes());
+    return journal;
+  }
+
+  // False if interrupted.
+  bool run_blocks(BakeJob& job, const TaskRange& range, Journal& journal) {
+    const Interrupt interrupt;
+    if (journal.blocks() > 0)
+      fmt::print(stderr, "resumed with {} of {} blocks\n", journal.blocks(), range.size());
+    Progress progress("bake", "blocks", static_cast<double>(range.size()), form_);
+    TaskSettings settings{options_.threads, {}, [&] { return interrupt.requested(); }};
+    settings.on_progress = [&](const BakeProgress& p) { progress(p); };
+    const bool done = run_tasks(job, range, journal, settings);
+    journal.sync();
+    if (!done)
+      fmt::print(stderr, "interrupted: {} of {} blocks are in {}; continue with --resume\n", journal.blocks(),
+                 range.size(), work_->path());
+    return done;
+  }
+
+  int bake_table() {
+    const auto encodings = encodings_of(plan_.recipe);
+    for (const Encoding encoding : encodings) {
+      announce(plan_.recipe, encoding);
+      const auto job = make_job(plan_.recipe, encoding, options_.seed);
+      const auto journal = journal_of(encoding);
+      if (!run_blocks(*job, {0, job->tasks()}, *journal)) return kInterrupted;
+      FinishedBake table(plan_.recipe, *job, *journal, plan_.summary);
+      const bool good =
+          table.measure_error(options_.preview ? kPreviewPoints : kVerifyPoints, options_.threads, form_);
+      if (encodings.size() > 1)
+        fmt::print(stderr, "encoding auto: {} {} the tolerances (median {:g}, p99 {:g})\n", name_of(encoding),
+                   good ? "is the smallest that meets" : "misses", plan_.recipe.accuracy.tolerance_median,
+                   plan_.recipe.accuracy.tolerance_p99);
+      if (!good && !options_.preview && encoding != encodings.back()) continue;
+      table.save(options_.output);
+      break;
+    }
+    work_->remove();
+    return 0;
+  }
+
+  int bake_part() {
+    const Encoding encoding = encodings_of(plan_.recipe).front();
+    announce(plan_.recipe, encoding);
+    const auto job = make_job(plan_.recipe, encoding, options_.seed);
+    const TaskRange range = shard_of(*job, options_.shard - 1, options_.shards);
+    const auto journal = journal_of(encoding);
+    if (!run_blocks(*job, range, *journal)) return kInterrupted;
+    std::error_code error;
+    std::filesystem::rename(journal->path(), options_.output, error);
+    if (error) throw Error(options_.output + ": cannot write: " + error.message());
+    work_->remove();
+    fmt::print(stderr, "{}: part {} of {}, {} blocks; join the parts with sunbeam merge\n", options_.output,
+               options_.shard, options_.shards, range.size());
+    return 0;
+  }
+
+  const BakeOptions& options_;
+  ProgressForm form_;
+  Recipe asked_;
+  Plan plan_;
+  std::optional<WorkFolder> work_;
+};
 
 }  // namespace
 
 int run_bake(const BakeOptions& options) {
-  require_table_extension(options.output);
-  const Recipe recipe = load_recipe(options.recipe, options.overrides);
-  require_writable(options.output);
-  const Table table = bake_and_measure(options, recipe);
-  const std::string bytes = table_bytes(table, options.output);
-  write_file_atomically(options.output, bytes);
-  fmt::print(stderr, "{}: {}, {} bytes, {} walks of {}\n", options.output, table.info.at("encoding"),
-             bytes.size(), table.info.at("samples"), table.info.at("estimator"));
-  return 0;
+  if (options.shards == 0) require_table_extension(options.output);
+  return BakeCommand(options).run();
 }
 
 }  // namespace sunbeam

@@ -14,10 +14,21 @@ namespace sunbeam {
 struct BakeOptions {
   std::string recipe, output;
   std::vector<std::string> overrides;
+  std::string progress = "text";
   int threads = 0;
   std::uint64_t seed = 1;
+  int shard = 0, shards = 0;  // shard counts from 1; 0: all in one go
+  bool resume = false, preview = false;
 };
 int run_bake(const BakeOptions& options);
+
+struct MergeOptions {
+  std::vector<std::string> parts;
+  std::string output;
+  std::string progress = "text";
+  int threads = 0;
+};
+int run_merge(const MergeOptions& options);
 
 struct InfoOptions {
   std::string source;  // table or recipe

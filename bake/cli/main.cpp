@@ -5,9 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <csignal>
 #include <limits>
 #include <new>
+#include <tuple>
 
 #include "bake/cli/commands.h"
 #include "bake/version.h"
@@ -66,6 +68,24 @@ void add_overrides(CLI::App* command, std::vector<std::string>& overrides) {
       ->take_all();
 }
 
+void add_progress(CLI::App* command, std::string& form) {
+  command->add_option("--progress", form, "On stderr; json: a line a second, for logs")
+      ->check(CLI::IsMember({"text", "json"}));
+}
+
+// "K/N" with 1 <= K <= N.
+std::pair<int, int> shard_of_text(const std::string& text) {
+  constexpr int kMostShards = 100000;
+  const auto numbers = split(text, '/');
+  double shard = 0, shards = 0;
+  if (numbers.size() != 2 || !parse_number(numbers[0], shard) || !parse_number(numbers[1], shards) ||
+      !(shard >= 1 && shard <= shards && shards <= kMostShards) || shard != std::floor(shard) ||
+      shards != std::floor(shards))
+    throw Error(fmt::format("--shard: found '{}'; allowed: K/N with K from 1 to N, and N up to {}", text,
+                            kMostShards));
+  return {static_cast<int>(shard), static_cast<int>(shards)};
+}
+
 void add_bake(CLI::App& app, BakeOptions& o, int& exit_code) {
   CLI::App* command =
       add_command(app, "bake", "Bake a recipe into a table (.exr or .vdb)",
@@ -75,7 +95,25 @@ void add_bake(CLI::App& app, BakeOptions& o, int& exit_code) {
   add_overrides(command, o.overrides);
   add_threads(command, o.threads);
   command->add_option("--seed", o.seed, "Random seed")->check(whole_number(0, kAnySeed));
+  command->add_flag("--resume", o.resume, "Continue the bake in OUTPUT.work, if there is one");
+  command->add_flag("--preview", o.preview, "A coarse table in seconds");
+  command->add_option_function<std::string>(
+      "--shard", [&o](const std::string& text) { std::tie(o.shard, o.shards) = shard_of_text(text); },
+      "K/N: bake the K-th of N parts, for sunbeam merge");
+  add_progress(command, o.progress);
   command->callback([&] { exit_code = run_bake(o); });
+}
+
+void add_merge(CLI::App& app, MergeOptions& o, int& exit_code) {
+  CLI::App* command =
+      add_command(app, "merge", "Join the parts of a bake into a table (.exr or .vdb)",
+                  "sunbeam bake RECIPE --shard 1/2 -o 1.part; sunbeam bake RECIPE --shard 2/2 "
+                  "-o 2.part; sunbeam merge 1.part 2.part -o skin.exr");
+  command->add_option("parts", o.parts, "Parts, in any order")->required();
+  command->add_option("-o,--output", o.output, "Table to write; the extension chooses the form")->required();
+  add_threads(command, o.threads);
+  add_progress(command, o.progress);
+  command->callback([&] { exit_code = run_merge(o); });
 }
 
 void add_info(CLI::App& app, InfoOptions& o, int& exit_code) {
@@ -263,6 +301,7 @@ int run(int argc, char** argv) {
       "`sunbeam COMMAND --help` shows the options of a command.");
   int exit_code = 0;
   BakeOptions bake;
+  MergeOptions merge;
   InfoOptions info;
   EvalOptions eval;
   VerifyOptions verify;
@@ -272,6 +311,7 @@ int run(int argc, char** argv) {
   TextureOptions texture;
   MeshOptions mesh;
   add_bake(app, bake, exit_code);
+  add_merge(app, merge, exit_code);
   add_info(app, info, exit_code);
   add_eval(app, eval, exit_code);
   add_verify(app, verify, exit_code);

@@ -1,24 +1,41 @@
-// Progress on stderr: a bar that redraws itself on a terminal, a plain line every tenth otherwise.
+// Progress on stderr: a bar that redraws itself on a terminal, a plain line every tenth otherwise, or, for a
+// farm's log, a line of JSON every second.
 #pragma once
 
 #include <chrono>
 #include <string>
 
+#include "bake/run_tasks.h"
+
 namespace sunbeam {
+
+enum class ProgressForm { text, json };
 
 class Progress {
  public:
   // `unit` and `total` give the rate: "nodes", 1280 shows nodes a second.
-  Progress(std::string what, std::string unit, double total);
+  Progress(std::string what, std::string unit, double total, ProgressForm form = ProgressForm::text);
   void operator()(double fraction) { show(fraction, total_ * fraction); }
+  // What an earlier run had done counts as done, but not for the rate.
+  void operator()(const BakeProgress& progress);
   // Where the total is not known: `done` of the units so far.
   void show(double fraction, double done);
 
  private:
-  std::string line(double fraction, double done) const;
+  struct State {
+    double fraction, done;
+    double resumed = 0;       // of the fraction
+    double worst_error = -1;  // none if negative
+  };
+  void show(const State& state);
+  double seconds_left(const State& state) const;
+  double per_second(const State& state) const;
+  std::string line(const State& state) const;
+  std::string json(const State& state) const;
 
   std::string what_, unit_;
   double total_;
+  ProgressForm form_;
   bool terminal_;
   std::chrono::steady_clock::time_point start_, last_;
   int tenths_ = 0;

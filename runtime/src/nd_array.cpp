@@ -27,17 +27,31 @@ float round_to(Precision precision, double value) {
   return rounded + 0.0f;  // -0 becomes 0
 }
 
-NdArray::NdArray(std::string name, std::vector<Axis> axes, Precision precision, std::size_t channels)
-    : name_(std::move(name)), axes_(std::move(axes)), precision_(precision), channels_(channels), cells_(1) {
-  if (axes_.empty() || axes_.size() > kMaxRank)
-    throw Error("array '" + name_ + "': has " + std::to_string(axes_.size()) + " axes; allowed: 1 to 8");
-  for (std::size_t k = axes_.size(); k-- > 0;) {
-    const std::string defect = axes_[k].defect();
-    if (!defect.empty()) throw Error("array '" + name_ + "': axis '" + axes_[k].name + "' " + defect);
-    strides_[k] = cells_;
-    if (axes_[k].size() > kMaxCells / cells_) throw Error("array '" + name_ + "': has more than 2^32 cells");
-    cells_ *= axes_[k].size();
+NdArray NdArray::outline(std::string name, std::vector<Axis> axes, Precision precision,
+                         std::size_t channels) {
+  NdArray array;
+  array.name_ = std::move(name);
+  array.axes_ = std::move(axes);
+  array.precision_ = precision;
+  array.channels_ = channels;
+  array.cells_ = 1;
+  if (array.axes_.empty() || array.axes_.size() > kMaxRank)
+    throw Error("array '" + array.name_ + "': has " + std::to_string(array.axes_.size()) +
+                " axes; allowed: 1 to 8");
+  for (std::size_t k = array.axes_.size(); k-- > 0;) {
+    const Axis& axis = array.axes_[k];
+    const std::string defect = axis.defect();
+    if (!defect.empty()) throw Error("array '" + array.name_ + "': axis '" + axis.name + "' " + defect);
+    array.strides_[k] = array.cells_;
+    if (axis.size() > kMaxCells / array.cells_)
+      throw Error("array '" + array.name_ + "': has more than 2^32 cells");
+    array.cells_ *= axis.size();
   }
+  return array;
+}
+
+NdArray::NdArray(std::string name, std::vector<Axis> axes, Precision precision, std::size_t channels)
+    : NdArray(outline(std::move(name), std::move(axes), precision, channels)) {
   values_.resize(channels_ * cells_);
 }
 

@@ -40,11 +40,6 @@ ImageSize image_size(const NdArray& array) {
   return {static_cast<int>(width), static_cast<int>(height)};
 }
 
-// Half values go to the library as halves: it converts floats only when reading.
-std::vector<Imath::half> as_halves(const NdArray& array) {
-  return {array.values().begin(), array.values().end()};
-}
-
 std::vector<std::string> channel_names(std::size_t channels) {
   return channels == 1 ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
 }
@@ -75,20 +70,46 @@ Imf::Header part_header(const NdArray& array, const Imath::Box2i& display_window
   return header;
 }
 
-void write_array(Imf::MultiPartOutputFile& file, int part, NdArray& array) {
-  Imf::OutputPart output(file, part);
-  const ImageSize size = image_size(array);
-  if (array.precision() == Precision::half_float) {
-    auto halves = as_halves(array);
-    output.setFrameBuffer(
-        frame_buffer(halves.data(), Imf::HALF, sizeof(Imath::half), array.channels(), size.width));
-    output.writePixels(size.height);
-  } else {
-    output.setFrameBuffer(
-        frame_buffer(array.values().data(), Imf::FLOAT, sizeof(float), array.channels(), size.width));
-    output.writePixels(size.height);
-  }
+// The next rows of a part. The library finds a row by its number from the top of the image, hence the offset.
+template <class Value>
+void write_rows(Imf::OutputPart& output, Imf::PixelType type, Value* values, std::size_t count,
+                std::size_t channels, int width) {
+  const std::size_t row = channels * static_cast<std::size_t>(width);
+  const auto before = static_cast<std::size_t>(output.currentScanLine()) * row * sizeof(Value);
+  output.setFrameBuffer(
+      frame_buffer(reinterpret_cast<char*>(values) - before, type, sizeof(Value), channels, width));
+  output.writePixels(static_cast<int>(count / row));
 }
+
+// Half values go to the library as halves: it converts floats only when reading.
+void write_array(Imf::MultiPartOutputFile& file, int part, const NdArray& array, const DenseCells* cells) {
+  Imf::OutputPart output(file, part);
+  const int width = image_size(array).width;
+  visit_values(array, cells, [&](std::size_t, std::span<const float> values) {
+    if (array.precision() == Precision::half_float) {
+      std::vector<Imath::half> halves(values.begin(), values.end());
+      write_rows(output, Imf::HALF, halves.data(), halves.size(), array.channels(), width);
+    } else {
+      std::vector<float> floats(values.begin(), values.end());
+      write_rows(output, Imf::FLOAT, floats.data(), floats.size(), array.channels(), width);
+    }
+  });
+}
+
+// The library's writer into a file that is not there until it is whole.
+class AtomicStream : public Imf::OStream {
+ public:
+  explicit AtomicStream(AtomicFile& file, const std::string& path) : OStream(path.c_str()), file_(file) {}
+
+  void write(const char bytes[], int count) override {
+    file_.write({bytes, static_cast<std::size_t>(count)});
+  }
+  std::uint64_t tellp() override { return file_.position(); }
+  void seekp(std::uint64_t position) override { file_.seek(position); }
+
+ private:
+  AtomicFile& file_;
+};
 
 // The library's reader over bytes in memory.
 class MemoryStream : public Imf::IStream {
@@ -158,10 +179,8 @@ TableParts read_parts(std::string_view bytes, const std::string& name) {
   return parts;
 }
 
-}  // namespace
-
-std::string table_exr_bytes(const Table& table) {
-  TableParts parts = to_parts(table);
+void write_table(Imf::OStream& stream, const Table& table, const DenseCells* cells) {
+  const TableParts parts = to_parts(table, cells);
   Imath::Box2i display_window({0, 0}, {0, 0});  // one for all parts, as the format wants it
   for (const auto& array : parts.arrays) {
     const ImageSize size = image_size(array);
@@ -171,12 +190,16 @@ std::string table_exr_bytes(const Table& table) {
   for (const auto& array : parts.arrays) headers.push_back(part_header(array, display_window));
   for (const auto& [key, value] : parts.attributes)
     headers.front().insert(kAttributePrefix + key, Imf::StringAttribute(value));
+  Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()));
+  for (std::size_t k = 0; k < parts.arrays.size(); ++k)
+    write_array(file, static_cast<int>(k), parts.arrays[k], cells);
+}
+
+}  // namespace
+
+std::string table_exr_bytes(const Table& table) {
   Imf::StdOSStream stream;
-  {
-    Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()));
-    for (std::size_t k = 0; k < parts.arrays.size(); ++k)
-      write_array(file, static_cast<int>(k), parts.arrays[k]);
-  }
+  write_table(stream, table, nullptr);
   return stream.str();
 }
 
@@ -195,6 +218,13 @@ Table load_table_exr(const std::string& path) { return parse_table_exr(read_file
 
 void save_table_exr(const Table& table, const std::string& path) {
   write_file_atomically(path, table_exr_bytes(table));
+}
+
+void save_table_exr(const Table& outline, const DenseCells& cells, const std::string& path) {
+  AtomicFile file(path);
+  AtomicStream stream(file, path);
+  write_table(stream, outline, &cells);
+  file.keep();
 }
 
 }  // namespace sunbeam

@@ -26,7 +26,7 @@ std::string name_of(Symmetry symmetry) {
 }
 
 // Hash over everything a file holds, so that damage shows.
-std::string parts_hash(const TableParts& parts) {
+std::string parts_hash(const TableParts& parts, const DenseCells* cells = nullptr) {
   std::string digest;
   for (const auto& [key, value] : parts.attributes)
     if (key != "content_hash") digest += key + "=" + value + "\n";
@@ -34,8 +34,11 @@ std::string parts_hash(const TableParts& parts) {
     if (array.channels() == 1) digest += "numbers ";
     digest += array.name() + (array.precision() == Precision::half_float ? " half\n" : " float\n");
     for (const auto& [key, value] : describe_axes(array.axes())) digest += key + "=" + value + "\n";
-    const auto values = array.values();
-    digest += content_hash({reinterpret_cast<const char*>(values.data()), values.size_bytes()}) + "\n";
+    ContentHash hash;
+    visit_values(array, cells, [&](std::size_t, std::span<const float> values) {
+      hash.add({reinterpret_cast<const char*>(values.data()), values.size_bytes()});
+    });
+    digest += hash.text() + "\n";
   }
   return content_hash(digest);
 }
@@ -58,9 +61,11 @@ std::string inventory(const TableParts& parts) {
   return list.empty() ? "no array" : list;
 }
 
-void require_finite(const NdArray& array) {
-  for (const float value : array.values())
-    if (!std::isfinite(value)) throw Error("array '" + array.name() + "' holds a value that is not finite");
+void require_finite(const NdArray& array, const DenseCells* cells = nullptr) {
+  visit_values(array, cells, [&](std::size_t, std::span<const float> values) {
+    for (const float value : values)
+      if (!std::isfinite(value)) throw Error("array '" + array.name() + "' holds a value that is not finite");
+  });
 }
 
 template <std::size_t N>
@@ -307,7 +312,7 @@ Table build(const TableParts& parts) {
   for (const char* key : kRequiredInfo) table.info[key] = require(parts.attributes, key);
   read_spectrum(parts, table);
   for (const auto& [key, value] : parts.attributes)
-    if (key.starts_with("error.") || key == "noise") table.info[key] = value;
+    if (key.starts_with("error.") || key == "noise" || key == "plan") table.info[key] = value;
   return table;
 }
 
@@ -358,7 +363,21 @@ std::vector<Axis> parse_axes(const Attributes& attributes, const std::string& ar
   return axes;
 }
 
-TableParts to_parts(const Table& table) {
+void visit_values(const NdArray& array, const DenseCells* cells,
+                  const std::function<void(std::size_t first, std::span<const float> values)>& visit) {
+  if (!array.is_outline()) return visit(0, array.values());
+  if (!cells) throw Error("array '" + array.name() + "' has no values");
+  constexpr std::size_t kPiece = 1 << 22;  // values, unless a node has more
+  const std::size_t stride = array.stride(kParameterNames.size() - 1), nodes = array.cells() / stride;
+  const std::size_t at_once = std::max<std::size_t>(1, kPiece / (stride * array.channels()));
+  for (std::size_t first = 0; first < nodes; first += at_once) {
+    const std::size_t count = std::min(at_once, nodes - first);
+    visit(first * stride,
+          array.channels() == 1 ? cells->rest_stderr(first, count) : cells->remainder(first, count));
+  }
+}
+
+TableParts to_parts(const Table& table, const DenseCells* cells) {
   if (!table.is_factored())
     for (const NdArray* array : {&table.film_reflectance, &table.remainder, &table.rest_stderr})
       if (array->empty()) throw Error("an empty table cannot be written");
@@ -378,11 +397,11 @@ TableParts to_parts(const Table& table) {
        {&f.arrival, &f.returned, &f.exchange, &table.film_reflectance, &table.remainder, &table.rest_stderr,
         &table.film_transmittance, &table.first_visit})
     if (!array->empty()) parts.arrays.push_back(*array);
-  for (const NdArray& array : parts.arrays) require_finite(array);
+  for (const NdArray& array : parts.arrays) require_finite(array, cells);
   // One order for every file form: both libraries list arrays in an order of their own.
   std::sort(parts.arrays.begin(), parts.arrays.end(),
             [](const auto& a, const auto& b) { return a.name() < b.name(); });
-  parts.attributes["content_hash"] = parts_hash(parts);
+  parts.attributes["content_hash"] = parts_hash(parts, cells);
   return parts;
 }
 

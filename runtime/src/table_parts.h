@@ -1,11 +1,14 @@
 // The neutral form between a Table and a file: text attributes and named arrays. Checks live here, once.
 #pragma once
 
+#include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "sunbeam/table.h"
+#include "sunbeam/table_io.h"
 
 namespace sunbeam {
 
@@ -16,7 +19,12 @@ struct TableParts {
   std::vector<NdArray> arrays;
 };
 
-TableParts to_parts(const Table& table);
+// `cells` has the values of outlines, if there are any.
+TableParts to_parts(const Table& table, const DenseCells* cells = nullptr);
+
+// Calls visit(first cell, values) for all of an array, from its first cell on.
+void visit_values(const NdArray& array, const DenseCells* cells,
+                  const std::function<void(std::size_t first, std::span<const float> values)>& visit);
 
 // Checks schema, names, ranks, sizes, finiteness and the content hash before it builds. Throws Error whose
 // message starts with `name`.

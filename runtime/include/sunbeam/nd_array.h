@@ -26,6 +26,12 @@ class NdArray {
   // `channels` is 3 (colours) or 1.
   NdArray(std::string name, std::vector<Axis> axes, Precision precision, std::size_t channels = 3);
 
+  // The same array without its values, which are kept elsewhere: values() is empty, and get() must not be
+  // called.
+  static NdArray outline(std::string name, std::vector<Axis> axes, Precision precision,
+                         std::size_t channels = 3);
+  bool is_outline() const { return cells_ > 0 && values_.empty(); }
+
   const std::string& name() const { return name_; }
   const std::vector<Axis>& axes() const { return axes_; }
   Precision precision() const { return precision_; }

@@ -1,16 +1,40 @@
 // Whole files in and out. Writing never leaves a half-written file behind and never harms an existing one.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
 namespace sunbeam {
 
+// A file that takes its place only when it is whole: written to a temporary beside `path`, which keep()
+// flushes to disk and renames; without it the temporary is removed. Every function throws Error naming `path`
+// (disk full, unwritable), with an older file there untouched.
+class AtomicFile {
+ public:
+  explicit AtomicFile(const std::string& path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void write(std::string_view bytes);
+  std::uint64_t position() const { return position_; }  // of the next write
+  void seek(std::uint64_t position);
+  void keep();
+
+ private:
+  [[noreturn]] void fail();
+
+  std::string target_, path_;
+  int descriptor_ = -1;
+  std::uint64_t position_ = 0;
+  bool kept_ = false;
+};
+
 // Throws Error if the file cannot be read.
 std::string read_file(const std::string& path);
 
-// Writes to a temporary beside `path`, flushes it to disk, then renames. Throws Error (disk full,
-// unwritable), with the temporary removed and an older file at `path` untouched.
+// An AtomicFile of these bytes.
 void write_file_atomically(const std::string& path, std::string_view bytes);
 
 // Throws Error unless a file could be created at `path` now. For jobs that write only after long work.

@@ -1,0 +1,41 @@
+#include <fmt/format.h>
+
+#include "bake/cli/commands.h"
+#include "bake/cli/finish_bake.h"
+#include "bake/parts.h"
+#include "bake/sweep.h"
+#include "sunbeam/core/error.h"
+#include "sunbeam/core/file.h"
+#include "sunbeam/table_vdb.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr int kVerifyPoints = 250;  // as of a bake in one go
+
+}  // namespace
+
+int run_merge(const MergeOptions& options) {
+  require_table_extension(options.output);
+  Parts parts(options.parts);
+  const BakeIdentity& identity = parts.identity();
+  const Recipe recipe = parse_recipe(identity.recipe, "recipe of " + options.parts.front());
+  const bool is_factored = identity.encoding == name_of(Encoding::factored);
+  const auto job = make_job(recipe, is_factored ? Encoding::factored : Encoding::dense, identity.seed);
+  parts.require_whole(*job);
+  require_writable(options.output);
+  FinishedBake table(recipe, *job, parts, identity.plan);
+  const bool good = table.measure_error(kVerifyPoints, options.threads,
+                                        options.progress == "json" ? ProgressForm::json : ProgressForm::text);
+  table.save(options.output);
+  const auto encodings = encodings_of(recipe);
+  if (good || identity.encoding == name_of(encodings.back())) return 0;
+  fmt::print(
+      stderr,
+      "{}: misses the recipe's tolerances, and a bake in one go would go on to encoding \"{}\": bake the "
+      "parts again with --set table.encoding={}\n",
+      options.output, name_of(encodings.back()), name_of(encodings.back()));
+  return 1;
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,14 @@
+// The dense encoding of a scattering pigment by adding and doubling (live/slab_solver.h). A task is one film
+// thickness at one base IOR, with all absorptions; the tasks of a base IOR share the pigment's layers.
+#pragma once
+
+#include "bake/bake_job.h"
+
+namespace sunbeam {
+
+bool has_solution(const Recipe& recipe);
+
+// `recipe` must outlive the job.
+std::unique_ptr<BakeJob> solved_job(const Recipe& recipe, std::uint64_t seed);
+
+}  // namespace sunbeam

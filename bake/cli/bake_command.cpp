@@ -66,12 +66,14 @@ class BakeCommand {
     fmt::print(stderr, "plan: {}\n", plan_.summary);
   }
 
-  std::unique_ptr<Journal> journal_of(Encoding encoding) const {
+  BakeIdentity identity_of(Encoding encoding) const {
     const int shards = std::max(1, options_.shards), shard = options_.shards > 0 ? options_.shard - 1 : 0;
-    const BakeIdentity identity{
-        kToolVersion, asked_.hash, plan_.recipe.text, name_of(encoding), options_.seed,
-        shard,        shards,      plan_.summary};
-    auto journal = Journal::open(work_->journal_path(name_of(encoding)), identity);
+    return {kToolVersion, asked_.hash, plan_.recipe.text, name_of(encoding), options_.seed,
+            shard,        shards,      plan_.summary};
+  }
+
+  std::unique_ptr<Journal> journal_of(Encoding encoding) const {
+    auto journal = Journal::open(work_->journal_path(name_of(encoding)), identity_of(encoding));
     if (journal->damaged_bytes() > 0)
       fmt::print(stderr, "{}: its last {} bytes are no whole block and are baked again\n", journal->path(),
                  journal->damaged_bytes());
@@ -116,11 +118,27 @@ class BakeCommand {
     return 0;
   }
 
+  // Whether the output is this part and whole.
+  bool is_finished(const BakeIdentity& identity, const TaskRange& range) const {
+    try {
+      const auto part = Journal::read(options_.output);
+      return part->identity().text() == identity.text() && part->blocks() == range.size() &&
+             part->damaged_bytes() == 0;
+    } catch (const Error&) {
+      return false;  // no part: it is baked
+    }
+  }
+
   int bake_part() {
     const Encoding encoding = encodings_of(plan_.recipe).front();
     announce(plan_.recipe, encoding);
     const auto job = make_job(plan_.recipe, encoding, options_.seed);
     const TaskRange range = shard_of(*job, options_.shard - 1, options_.shards);
+    if (options_.resume && is_finished(identity_of(encoding), range)) {
+      fmt::print(stderr, "{}: is there already\n", options_.output);
+      work_->remove();
+      return 0;
+    }
     const auto journal = journal_of(encoding);
     if (!run_blocks(*job, range, *journal)) return kInterrupted;
     std::error_code error;

@@ -96,10 +96,12 @@ void add_bake(CLI::App& app, BakeOptions& o, int& exit_code) {
   add_threads(command, o.threads);
   command->add_option("--seed", o.seed, "Random seed")->check(whole_number(0, kAnySeed));
   command->add_flag("--resume", o.resume, "Continue the bake in OUTPUT.work, if there is one");
-  command->add_flag("--preview", o.preview, "A coarse table in seconds");
-  command->add_option_function<std::string>(
-      "--shard", [&o](const std::string& text) { std::tie(o.shard, o.shards) = shard_of_text(text); },
-      "K/N: bake the K-th of N parts, for sunbeam merge");
+  CLI::Option* preview = command->add_flag("--preview", o.preview, "A coarse table in seconds");
+  command
+      ->add_option_function<std::string>(
+          "--shard", [&o](const std::string& text) { std::tie(o.shard, o.shards) = shard_of_text(text); },
+          "K/N: bake the K-th of N parts, for sunbeam merge")
+      ->excludes(preview);
   add_progress(command, o.progress);
   command->callback([&] { exit_code = run_bake(o); });
 }

@@ -8,7 +8,9 @@ import csv
 import io
 import os
 import pathlib
+import resource
 import shutil
+import signal
 import struct
 import subprocess
 import tempfile
@@ -73,6 +75,17 @@ radius = 3.0
 material = "skin"
 """
 
+# Overrides of tiny.toml for every kind of bake job, with blocks by the dozen.
+BAKE_JOBS = {
+    "dense": ("--set", "table.encoding=dense", "--set", "table.angles=6",
+              "--set", "grid.film_thickness_nm={from=200, to=400, count=9}"),
+    "factored": ("--set", "table.encoding=factored", "--set", "material.roughness=0.2", "--set", "table.angles=10",
+                 "--set", "grid.base_ior={from=1.2, to=1.6, count=8}"),
+    "slab": ("--set", "material.scattering_per_nm=0.1", "--set", "material.absorption_path=sum", "--set",
+             "material.transmission=refract", "--set", "grid.base_ior={from=1.2, to=1.6, count=4}", "--set",
+             "grid.film_thickness_nm={from=200, to=400, count=9}", "--set", "table.azimuths=3"),
+}
+
 # With a black base nothing but the film remains: no walks to speak of.
 BLACK_BASE = ("--set", "material.albedo=0")
 
@@ -93,6 +106,14 @@ def run_command(command, cwd, stdin="", env=None, timeout=TIME_LIMIT_S, **option
         [str(part) for part in command], cwd=cwd, input=stdin.encode(), capture_output=True,
         timeout=timeout, env=dict(os.environ, LC_ALL="C", **(env or {})), **options)
     return Result(command, process)
+
+
+def limit_file_size(size):
+    """A function for a process to call before it starts: files end at `size` bytes, as if the disk were full."""
+    def limit():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+    return limit
 
 
 def make_folder(owner):

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "bake/cell.h"
+#include "bake/solved_job.h"
 #include "bake/sweep.h"
 #include "sunbeam/core/text.h"
 #include "sunbeam/core/warp.h"
@@ -12,9 +13,10 @@
 namespace sunbeam {
 namespace {
 
-constexpr int kProbes = 3;
+constexpr int kProbes = 5;
 constexpr int kViewers = 4, kDirections = 64;
-constexpr int kMostRounds = 6;  // halvings of an interval
+constexpr double kShareOfAnAxis = 0.5;  // of the error allowed: those of several axes add up
+constexpr int kMostRounds = 12;         // halvings of an interval
 constexpr std::uint64_t kStream = 1000003;
 
 std::string list_of(const std::vector<double>& values) {
@@ -48,11 +50,12 @@ class Planner {
  public:
   Planner(const Recipe& recipe, const PlanSettings& settings)
       : settings_(settings),
-        target_(recipe.accuracy.interpolation),
+        target_(kShareOfAnAxis * recipe.accuracy.interpolation),
         // The walks of a probe need not be better than what they are to show.
         recipe_(with(recipe, {fmt::format("accuracy.noise={}", std::max(recipe.accuracy.noise, target_))})),
         encoding_(encodings_of(recipe).front()),
-        asked_noise_(recipe.accuracy.noise) {
+        asked_noise_(recipe.accuracy.noise),
+        has_noise_(encoding_ == Encoding::dense && !has_solution(recipe)) {
     Rng rng(settings.seed, kStream);
     for (int k = 0; k < kProbes; ++k) {
       std::array<double, 3> probe{};
@@ -83,8 +86,9 @@ class Planner {
   // The factored encoding knows fringe orders, whose nodes follow from the range of thicknesses.
   bool is_continuous(std::size_t axis) const { return encoding_ == Encoding::factored && axis == 0; }
 
-  Table bake(const Recipe& recipe) const {
-    return bake_table(recipe, encoding_, {settings_.seed, settings_.threads, {}});
+  Table bake(const Recipe& recipe) const { return bake(recipe, settings_.seed); }
+  Table bake(const Recipe& recipe, std::uint64_t seed) const {
+    return bake_table(recipe, encoding_, {seed, settings_.threads, {}});
   }
 
   // The recipe at a probe, but for one axis.
@@ -154,24 +158,28 @@ class Planner {
     return errors;
   }
 
-  // Of the key table.NAME.
+  // Of the key table.NAME. Rows of a table walk their own walks, so what those scatter sets a floor.
   void refine_count(const char* name, int count, int multiple) {
     PlannedAxis report{name, static_cast<std::size_t>(count), 0, 0, false};
     const auto set = [&](int n) { return fmt::format("table.{}={}", name, n); };
     for (int round = 0; round < kMostRounds; ++round) {
       report.error = 0;
+      double noise = 0;
       for (const auto& probe : probes_) {
-        const Table coarse = bake(at_probe(probe, 3, {set(count)}));
+        const Parameters at{probe[0], probe[1], probe[2]};
+        const Recipe recipe = at_probe(probe, 3, {set(count)});
+        const Table coarse = bake(recipe);
         const Table fine = bake(at_probe(probe, 3, {set(2 * count)}));
-        report.error = std::max(report.error, difference(coarse, fine, {probe[0], probe[1], probe[2]}));
+        report.error = std::max(report.error, difference(coarse, fine, at));
+        if (has_noise_) noise = std::max(noise, difference(coarse, bake(recipe, settings_.seed + 1), at));
       }
       if (settings_.on_step) settings_.on_step(name, static_cast<std::size_t>(count), report.error);
-      if (report.error <= target_) break;
+      if (report.error <= std::max(target_, noise)) break;
       const int more = (count + count / 2 + multiple - 1) / multiple * multiple;
-      const Recipe next = with(recipe_, {set(more)});
-      if ((report.limited = breaks_limits(next) || round + 1 == kMostRounds)) break;
+      if ((report.limited = more > kMostDirectionNodes / 2 || breaks_limits(with(recipe_, {set(more)}))))
+        break;
       count = more;
-      recipe_ = next;
+      recipe_ = with(recipe_, {set(more)});
     }
     report.after = static_cast<std::size_t>(count);
     add(report);
@@ -192,6 +200,7 @@ class Planner {
   Recipe recipe_;
   Encoding encoding_;
   double asked_noise_;
+  bool has_noise_;
   std::vector<std::array<double, 3>> probes_;
   std::vector<Vec3> viewers_, directions_;
   std::string summary_;

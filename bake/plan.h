@@ -4,9 +4,10 @@
 //
 // One axis after the other, with the rest of the parameters fixed at drawn probes: the table baked on the
 // axis' nodes is held against one baked on twice as many, in the middle of each interval, where interpolation
-// is worst. The random walks of both are the same, so their noise does not count. An interval of a parameter
-// that misses the target is halved; of angles and azimuths there are half as many again until none misses.
-// Where more nodes would break the limits, the plan stops and says so.
+// is worst. An axis may have half of the error allowed. The random walks of both are the same, so their noise
+// does not count. An interval of a parameter that misses the target is halved; of angles and azimuths there
+// are half as many again until none misses. Where more nodes would break the limits, the plan stops and says
+// so.
 #pragma once
 
 #include <cstdint>

@@ -185,18 +185,17 @@ double default_noise(double tolerance_p99) { return std::clamp(tolerance_p99 / 4
 // As many as the material's rest needs: see recipe.h.
 int read_azimuths(const ConfigTable& config, const Material& material) {
   constexpr const char* kAzimuths = "azimuths";
-  constexpr int kMost = 512;
   const bool isotropic = material.roughness.is_isotropic();
-  const int azimuths = config.integer(kAzimuths, 1, kMost, default_azimuths(material));
+  const int azimuths = config.integer(kAzimuths, 1, kMostDirectionNodes, default_azimuths(material));
   if (!isotropic && azimuths % 4 != 0)
     config.fail(kAzimuths,
                 fmt::format("found {}; allowed with an anisotropic roughness: a multiple of 4 up to {}",
-                            azimuths, kMost));
+                            azimuths, kMostDirectionNodes));
   if (!material.is_plain() && azimuths == 1)
-    config.fail(
-        kAzimuths,
-        fmt::format("found 1, but the rest of a material with {} has azimuth; allowed: 2 to {}",
-                    material.scatters() ? "scattering_per_nm > 0" : "microfacet \"multiple\"", kMost));
+    config.fail(kAzimuths,
+                fmt::format("found 1, but the rest of a material with {} has azimuth; allowed: 2 to {}",
+                            material.scatters() ? "scattering_per_nm > 0" : "microfacet \"multiple\"",
+                            kMostDirectionNodes));
   return azimuths;
 }
 
@@ -214,7 +213,7 @@ Recipe parse_recipe(const std::string& text, const std::string& name,
   read_albedo(material, recipe.spectrum, recipe.material);
 
   const ConfigTable table = config.table("table");
-  recipe.table.angles = table.integer("angles", 2, 512, recipe.table.angles);
+  recipe.table.angles = table.integer("angles", 2, kMostDirectionNodes, recipe.table.angles);
   recipe.table.azimuths = read_azimuths(table, recipe.material);
   recipe.table.precision = static_cast<Precision>(table.choice("precision", {"half", "float"}, 0));
   recipe.table.encoding = static_cast<Encoding>(table.choice("encoding", {"auto", "dense", "factored"}, 0));

@@ -27,6 +27,8 @@ constexpr const char* name_of(Encoding encoding) {
 // (live/slab_solver.h), else walks.
 enum class TableValues { automatic, walks };
 
+inline constexpr int kMostDirectionNodes = 512;  // of table.angles and table.azimuths
+
 struct Recipe {
   Material
       material;  // [material]: fixed values, and defaults of the grid's parameters; albedo as Spectrum has it

@@ -57,7 +57,7 @@ class TaskRun {
   void count(std::size_t task) {
     ++progress_.done;
     done_cost_ += job_.cost(task);
-    progress_.fraction = done_cost_ / total_cost_;
+    progress_.fraction = progress_.done == progress_.total ? 1 : done_cost_ / total_cost_;
     progress_.worst_error = std::max(progress_.worst_error, store_.summary(task).worst_error);
   }
 

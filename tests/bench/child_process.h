@@ -17,6 +17,7 @@ namespace sunbeam {
 
 struct ChildTime {
   double seconds, cpu_seconds;  // wall clock; of all its threads
+  double most_resident;         // bytes of memory
 };
 
 // Runs `command` (program and arguments) without output and waits. Throws Error unless it succeeds.
@@ -39,7 +40,7 @@ inline ChildTime run_child(std::vector<std::string> command) {
     return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   };
   return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
-          seconds(usage.ru_utime) + seconds(usage.ru_stime)};
+          seconds(usage.ru_utime) + seconds(usage.ru_stime), 1024.0 * static_cast<double>(usage.ru_maxrss)};
 }
 
 }  // namespace sunbeam

@@ -26,14 +26,20 @@ struct RecordHead {
   std::uint64_t size;
 };
 constexpr std::size_t kHashSize = 32;
+constexpr std::size_t kHeaderStart =
+    kMagic.size() + sizeof(std::uint64_t) + kHashSize;  // size and hash of the text
 
 std::string bytes_of(const RecordHead& head) { return {reinterpret_cast<const char*>(&head), sizeof head}; }
 
-std::string record_hash(const RecordHead& head, std::string_view values) {
+std::string hash_of(std::string_view head, std::string_view values) {
   ContentHash hash;
-  hash.add(bytes_of(head));
+  hash.add(head);
   hash.add(values);
   return hash.text();
+}
+
+std::string record_hash(const RecordHead& head, std::string_view values) {
+  return hash_of(bytes_of(head), values);
 }
 
 double seconds_now() {
@@ -100,9 +106,7 @@ std::unique_ptr<Journal> Journal::open(const std::string& path, const BakeIdenti
     journal->read_header();
   } catch (const Error&) {
     // Killed before the header was whole: nothing is lost by starting anew.
-    if (static_cast<std::uint64_t>(status.st_size) >
-        sizeof(std::uint64_t) + kMagic.size() + identity.text().size())
-      throw;
+    if (static_cast<std::uint64_t>(status.st_size) > kHeaderStart + identity.text().size()) throw;
     journal->write_header(identity);
     return journal;
   }
@@ -131,26 +135,26 @@ void Journal::write_header(const BakeIdentity& identity) {
   if (::ftruncate(descriptor_, 0) != 0) fail("cannot write");
   const std::string text = identity.text();
   const std::uint64_t size = text.size();
-  append(std::string(kMagic) + std::string(reinterpret_cast<const char*>(&size), sizeof size) + text);
+  append(std::string(kMagic) + std::string(reinterpret_cast<const char*>(&size), sizeof size) +
+         hash_of({}, text) + text);
   sync();
 }
 
 void Journal::read_header() {
-  char magic[kMagic.size()];
+  char magic[kMagic.size()], hash[kHashSize];
   std::uint64_t size = 0;
   if (!read_at(0, magic, sizeof magic) || std::string_view(magic, sizeof magic) != kMagic)
     throw Error(path_ + ": is not the work or a part of a bake");
   std::string text;
-  if (read_at(sizeof magic, reinterpret_cast<char*>(&size), sizeof size) && size <= kLargestHeader)
+  if (read_at(sizeof magic, reinterpret_cast<char*>(&size), sizeof size) &&
+      read_at(sizeof magic + sizeof size, hash, sizeof hash) && size <= kLargestHeader)
     text.resize(size);
-  end_ = sizeof magic + sizeof size + text.size();
-  if (text.empty() || !read_at(sizeof magic + sizeof size, text.data(), text.size()))
+  end_ = kHeaderStart + text.size();
+  if (text.empty() || !read_at(kHeaderStart, text.data(), text.size()))
     throw Error(path_ + ": its header is cut short");
-  try {
-    identity_ = BakeIdentity::parse(text);
-  } catch (const std::exception& error) {
-    throw Error(path_ + ": its header is damaged: " + error.what());
-  }
+  if (hash_of({}, text) != std::string_view(hash, sizeof hash))
+    throw Error(path_ + ": its header is damaged");
+  identity_ = BakeIdentity::parse(text);
 }
 
 void Journal::read_records() {

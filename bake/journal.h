@@ -1,7 +1,7 @@
 // Finished blocks of a bake in one file that only grows, so that a bake may be killed at any moment: the work
 // of a bake that goes on, and the part that a shard hands to `sunbeam merge`.
 //
-// The file is a header - what is baked, as text - and records, each with a hash of its own. A record that was
+// The file is a header - what is baked, as text - and records, each of them with a hash. A record that was
 // cut short or damaged ends the file for a reader. Numbers are in the order of the machine (little-endian).
 #pragma once
 

@@ -13,8 +13,8 @@ class TaskRun {
  public:
   TaskRun(BakeJob& job, const TaskRange& range, BlockStore& store, const TaskSettings& settings)
       : job_(job), store_(store), settings_(settings), progress_{0, range.size(), 0, 0, 0} {
+    for (std::size_t task = range.first; task < range.end; ++task) total_cost_ += job.cost(task);
     for (std::size_t task = range.first; task < range.end; ++task) {
-      total_cost_ += job.cost(task);
       if (store.has(task))
         count(task);
       else

@@ -1,10 +1,5 @@
 """`sunbeam bake`: the same recipe gives the same bytes, and a table appears only when it is complete."""
 
-import itertools
-import resource
-import signal
-import subprocess
-import time
 import unittest
 
 import support
@@ -96,47 +91,6 @@ class Completeness(support.CliTest):
         result = self.sunbeam("bake", "tiny.toml", "-o", "old.exr", "--set", "material.albedo=2")
         self.check_refusal(result, "material.albedo")
         self.check_untouched()
-
-    def test_a_full_disk_leaves_the_old_table(self):
-        """A limit on the size of files stands for the full disk: it allows the probe, not the table."""
-
-        def limit_file_size():
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-            resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
-
-        for name in ("old.exr", "new.exr", "new.vdb"):
-            with self.subTest(output=name):
-                result = self.sunbeam("bake", "tiny.toml", "-o", name, *support.BLACK_BASE,
-                                      preexec_fn=limit_file_size)
-                self.assertEqual(result.code, 2, result)
-                self.assertEqual(result.out, "", result)
-                errors = [line for line in result.err.splitlines() if line.startswith("sunbeam: error: ")]
-                self.assertEqual(len(errors), 1, result)
-                self.assertIn(name, errors[0])
-                self.assertIn("File too large", errors[0])
-                self.assertIn("bake 100 %", result.err, "the bake must have got as far as writing")
-                self.check_untouched()
-
-    def test_an_interrupted_bake_leaves_the_old_table(self):
-        fine = ("--set", "grid.film_thickness_nm={from=0, to=1000, count=500}",
-                "--set", "grid.base_ior={from=1, to=2, count=100}", "--set", "table.angles=20",
-                "--set", "accuracy.noise=0.0001")
-        for encoding, stop in itertools.product(ENCODINGS, (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)):
-            with self.subTest(encoding=encoding, signal=stop.name):
-                long_bake = [support.BINARY, "bake", "tiny.toml", "-o", "old.exr", "--threads", "1", *fine,
-                             *ENCODINGS[encoding]]
-                process = subprocess.Popen(long_bake, cwd=self.folder, stderr=subprocess.PIPE)
-                try:
-                    started = process.stderr.readline()  # the recipe is read and the output was probed
-                    self.assertIn(f"tiny.toml: {encoding}, ".encode(), started)
-                    time.sleep(0.1)
-                    self.assertIsNone(process.poll(), "the bake ended before it could be interrupted")
-                finally:
-                    process.send_signal(stop)
-                    process.wait(timeout=support.TIME_LIMIT_S)
-                    process.stderr.close()
-                self.assertNotEqual(process.returncode, 0)
-                self.check_untouched()
 
 
 class UnwritableOutput(support.CliTest):

@@ -7,7 +7,7 @@ import unittest
 
 import support
 
-COMMANDS = ("bake", "info", "eval", "verify", "plot", "render", "compare")
+COMMANDS = ("bake", "merge", "info", "eval", "verify", "plot", "render", "compare")
 
 
 class Help(support.CliTest):
@@ -27,7 +27,8 @@ class Help(support.CliTest):
 
     def test_help_names_every_option(self):
         options = {
-            "bake": ("--output", "--set", "--threads", "--seed"),
+            "bake": ("--output", "--set", "--threads", "--seed", "--resume", "--preview", "--shard", "--progress"),
+            "merge": ("--output", "--threads", "--progress"),
             "info": ("--json",),
             "eval": ("--points", "--quantity", "--estimator", "--set", "--samples", "--seed"),
             "verify": ("--points", "--json", "--html", "--threads", "--seed"),

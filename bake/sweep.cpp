@@ -5,14 +5,13 @@
 #include <atomic>
 #include <limits>
 #include <map>
-#include <set>
 #include <span>
 
 #include "bake/cell.h"
 #include "bake/factor_walks.h"
 #include "bake/film_tables.h"
 #include "bake/live/pfmc.h"
-#include "bake/live/slab_solver.h"
+#include "bake/live/slab_films.h"
 #include "bake/parallel_tasks.h"
 #include "bake/version.h"
 #include "sunbeam/core/error.h"
@@ -235,42 +234,36 @@ class Sweep {
   // All nodes of one base IOR, without walks.
   void solve_nodes(std::size_t ior) {
     const std::vector<Axis>& grid = recipe_.grid;
-    Material material = recipe_.material;
-    material.base_ior = grid[1].nodes[ior];
-    SlabSolver solver(material, table_.remainder.axes()[3].nodes);
-    std::set<double> depths;
-    for (const double absorption : grid[2].nodes) {
-      material.absorption_per_nm = absorption;
-      for (const double relative : recipe_.spectrum.wavelengths(material).absorption)
-        depths.insert(material.optical_depth() * relative);
-    }
-    const std::vector<double> each(depths.begin(), depths.end());
-    run_parallel_tasks(each.size(), settings_.threads, {}, [&](std::size_t k) { solver.add_depth(each[k]); });
+    const std::vector<Axis>& axes = table_.remainder.axes();
+    const Material material = Parameters{grid[0].high(), grid[1].nodes[ior], 0}.applied_to(recipe_.material);
+    SlabFilms films(material, recipe_.spectrum.wavelengths(material),
+                    {grid[0].nodes, grid[2].nodes, axes[3].nodes, axes[6].nodes});
+    films.prepare(0, grid[0].size(), [&](std::size_t count, const auto& task) {
+      run_parallel_tasks(count, settings_.threads, {}, task);
+    });
     const auto progress = [&](double fraction) {
       if (settings_.on_progress)
         settings_.on_progress((static_cast<double>(ior) + fraction) / static_cast<double>(grid[1].size()));
     };
     run_parallel_tasks(grid[0].size(), settings_.threads, progress, [&](std::size_t thickness) {
-      solve_film(solver, (thickness * grid[1].size() + ior) * grid[2].size());
+      for (std::size_t absorption = 0; absorption < grid[2].size(); ++absorption)
+        solve_node(films, thickness, ior, absorption);
     });
   }
 
-  // The nodes of one film from `first_node` on.
-  void solve_film(const SlabSolver& solver, std::size_t first_node) {
-    const Material at_first = parameters_at(recipe_.grid, first_node).applied_to(recipe_.material);
-    const SlabSolver::Film film(solver, at_first.film_thickness_nm, recipe_.spectrum.wavelengths(at_first));
-    for (std::size_t node = first_node; node < first_node + recipe_.grid[2].size(); ++node) {
-      const Parameters parameters = parameters_at(recipe_.grid, node);
-      const Material material = parameters.applied_to(recipe_.material);
-      const auto rest = film.rest(material.optical_depth());
-      const auto& azimuths = table_.remainder.axes()[6].nodes;
-      std::vector<Row> rows(wi_.size());
-      for (std::size_t i = 0; i < wi_.size(); ++i)
-        for (std::size_t o = 0; o < wo_.size(); ++o)
-          rows[i].value.push_back(rest.at(o / azimuths.size(), i, azimuths[o % azimuths.size()]));
-      for (Row& row : rows) row.standard_error.resize(wo_.size());
-      finish(node, parameters, material, rows);
+  void solve_node(const SlabFilms& films, std::size_t thickness, std::size_t ior, std::size_t absorption) {
+    const std::vector<Axis>& grid = recipe_.grid;
+    const std::size_t node = (thickness * grid[1].size() + ior) * grid[2].size() + absorption;
+    const Parameters parameters = parameters_at(grid, node);
+    std::vector<Rgb> values(films.cells());
+    films.rest(thickness, absorption, values);
+    std::vector<Row> rows(wi_.size());
+    for (std::size_t i = 0; i < wi_.size(); ++i) {
+      const auto first = values.begin() + static_cast<std::ptrdiff_t>(i * wo_.size());
+      rows[i].value.assign(first, first + static_cast<std::ptrdiff_t>(wo_.size()));
+      rows[i].standard_error.resize(wo_.size());
     }
+    finish(node, parameters, parameters.applied_to(recipe_.material), rows);
   }
 
   void bake_node(std::size_t node) {

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <limits>
 #include <map>
+#include <optional>
 #include <span>
 
 #include "bake/cell.h"
@@ -59,6 +60,7 @@ std::vector<Axis> rest_axes(const Recipe& recipe) {
 
 // To three binary digits, so that it takes next to no room in a file. Nobody needs a noise more exactly.
 double coarse(double standard_error) {
+  if (standard_error == 0) return 0;
   int exponent = 0;
   const double fraction = std::frexp(standard_error, &exponent);
   return std::ldexp(std::round(8 * fraction) / 8, exponent);
@@ -209,6 +211,7 @@ class Sweep {
     table_.symmetry = symmetry_of(recipe);
     table_.frame = recipe.table.frame;
     bake_film(recipe, table_);
+    frame_.emplace(recipe.material, table_.first_visit);
     const auto axes = rest_axes(recipe);
     table_.remainder = NdArray("remainder", axes, recipe.table.precision);
     table_.rest_stderr = NdArray("rest_stderr", axes, Precision::single_float, 1);
@@ -296,7 +299,7 @@ class Sweep {
   }
 
   void frame(const Parameters& parameters, const Material& material, std::vector<Row>& rows) const {
-    const RestFrame frame(material, table_.first_visit);
+    const RestFrame frame = frame_->over(material);
     const auto transmittance = [&](double cosine) {
       return table_.transmittance({parameters.film_thickness_nm, parameters.base_ior, cosine});
     };
@@ -313,6 +316,7 @@ class Sweep {
   const SweepSettings& settings_;
   const Orbits orbits_;
   Table table_;
+  std::optional<RestFrame> frame_;
   std::vector<Vec3> wi_, wo_;
   std::size_t nodes_ = 0;
   std::atomic<std::uint64_t> walks_ = 0;

@@ -14,6 +14,7 @@ constexpr double kFaintest = 1e-5;   // SlabSolver::Resolution
 constexpr double kDepthStep = 0.05;  // of the root of a depth
 constexpr double kFringeError =
     2e-5;  // of the film's transmittance between nodes, relative, mean of a fringe
+constexpr int kMostTerms = EvenSamples::kStencil * EvenSamples::kStencil;
 constexpr std::size_t kOrdersTogether = 16;  // solved as one task
 
 // Time that a depth and an order take before anything is solved with them, in responses.
@@ -58,9 +59,18 @@ int nodes_per_fringe(const SlabSolver& solver, std::size_t cosines) {
 
 std::vector<double> sorted(const std::set<double>& values) { return {values.begin(), values.end()}; }
 
+// sum += weight[k] response[k] over `count` responses of `size` numbers.
 SUNBEAM_VECTOR_CLONES
-void add_response(double factor, const double* response, int count, double* sum) {
-  add_scaled(factor, response, count, sum);
+void add_responses(const double* weight, const double* const* response, int count, int size,
+                   double* __restrict sum) {
+  int k = 0;
+  // Four terms for each time a sum is fetched and put back.
+  for (; k + 4 <= count; k += 4) {
+    const double w0 = weight[k], w1 = weight[k + 1], w2 = weight[k + 2], w3 = weight[k + 3];
+    const double *x0 = response[k], *x1 = response[k + 1], *x2 = response[k + 2], *x3 = response[k + 3];
+    for (int j = 0; j < size; ++j) sum[j] = sum[j] + w0 * x0[j] + w1 * x1[j] + w2 * x2[j] + w3 * x3[j];
+  }
+  for (; k < count; ++k) add_scaled(weight[k], response[k], size, sum);
 }
 
 // sum[c] += weight[c] values, per channel.
@@ -201,15 +211,20 @@ void SlabFilms::rest(std::size_t thickness, std::size_t absorption, std::span<Rg
   for (std::size_t j = 0; j < wavelengths_.size(); ++j) {
     const EvenSamples::Stencil order = nodes_.order.at(orders[j]),
                                depth = nodes_.root_depth.at(root_depth(absorption, j));
-    std::fill(spectral.begin(), spectral.end(), 0.0);
+    std::array<double, kMostTerms> weight;
+    std::array<const double*, kMostTerms> response;
+    int terms = 0;
     for (int o = 0; o < order.count; ++o)
-      for (int d = 0; d < depth.count; ++d) {
+      for (int d = 0; d < depth.count; ++d, ++terms) {
         const std::vector<double>& solved = response_[nodes_.pair(order.node[o], depth.node[d])];
         if (solved.empty())
           throw Error("slab films: found thickness node " + std::to_string(thickness) +
                       " that was not prepared");
-        add_response(order.weight[o] * depth.weight[d], solved.data(), size, spectral.data());
+        weight[terms] = order.weight[o] * depth.weight[d];
+        response[terms] = solved.data();
       }
+    std::fill(spectral.begin(), spectral.end(), 0.0);
+    add_responses(weight.data(), response.data(), terms, size, spectral.data());
     SlabSolver::Response base;
     base.arrived.assign(spectral.begin() + static_cast<std::ptrdiff_t>(slab_cells), spectral.end() - 1);
     base.returned = spectral.back();

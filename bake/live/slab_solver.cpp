@@ -208,7 +208,7 @@ int SlabSolver::modes_above(double faintest) const {
     for (int i = 0; i < once.size(); ++i)
       for (int j = 0; j < once.size(); ++j)
         once.row(i)[j] *= nodes_.root[i] * nodes_.root[j] / (nodes_.cosine[i] + nodes_.cosine[j]);
-    const Matrix sees = film.entry(0, mode), left = multiply(multiply(sees, once), transposed(sees));
+    const Matrix &sees = film.modes_[0][mode].entry, left = multiply(multiply(sees, once), transposed(sees));
     if (mode == 0) mean = left;
     bool is_faint = true;
     for (int a = 0; a < left.size(); ++a)
@@ -292,41 +292,40 @@ std::vector<double> SlabSolver::transmittances(std::span<const double> orders, s
   return sums;
 }
 
-SlabSolver::Fringes::Fringes(const SlabSolver& solver, std::span<const double> orders)
-    : solver_(solver), count_(static_cast<int>(orders.size())) {
+// By (mode, row, node, order).
+std::vector<double> SlabSolver::moments(const std::vector<Facets>& rows, const walk::FilmSide& film,
+                                        bool lets_through, std::span<const double> orders) const {
   const walk::FilmPhases phases = phases_at(orders);
   const walk::Kernels& kernels = walk::best_kernels();
+  const std::size_t row_size = nodes_.cosine.size() * orders.size(), mode_size = rows.size() * row_size;
+  std::vector<double> moments(modes_ * mode_size);
   std::array<double, kMostWavelengths> power;
-  const auto moments_of = [&](const std::vector<Facets>& rows, const walk::FilmSide& film,
-                              bool lets_through) {
-    const std::size_t row_size = static_cast<std::size_t>(solver.nodes_.size()) * count_;
-    const std::size_t mode_size = rows.size() * row_size;
-    std::vector<double> moments(solver.modes_ * mode_size);
-    for (std::size_t row = 0; row < rows.size(); ++row)
-      for (const Facet& facet : rows[row]) {
-        kernels.reflectances(film, phases, facet.cosine, power.data());
-        for (int j = 0; j < count_; ++j) power[j] = facet.share * (lets_through ? 1 - power[j] : power[j]);
-        add_facet(facet.even.data(), facet.odd.data(), Nodes::kStencil, facet.azimuth, solver.modes_,
-                  power.data(), count_, &moments[row * row_size + facet.first_node * count_], mode_size);
-      }
-    return moments;
-  };
-  entry_ = moments_of(solver.entry_, solver.interface_.film, true);
-  thrown_back_ = moments_of(solver.thrown_back_, solver.interface_.film_below, false);
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    for (const Facet& facet : rows[row]) {
+      kernels.reflectances(film, phases, facet.cosine, power.data());
+      for (int j = 0; j < phases.count; ++j)
+        power[j] = facet.share * (lets_through ? 1 - power[j] : power[j]);
+      add_facet(facet.even.data(), facet.odd.data(), Nodes::kStencil, facet.azimuth, modes_, power.data(),
+                phases.count, &moments[row * row_size + facet.first_node * orders.size()], mode_size);
+    }
+  return moments;
 }
 
-// Of one mode at one order, by (row, node).
-Matrix SlabSolver::Fringes::mode_of(const std::vector<double>& moments, std::size_t rows, std::size_t order,
-                                    int mode) const {
-  Matrix m(static_cast<int>(rows), solver_.nodes_.size());
-  const double* from = &moments[mode * rows * m.columns() * count_ + order];
-  for (int row = 0; row < m.size(); ++row)
-    for (int node = 0; node < m.columns(); ++node, from += count_) m.row(row)[node] = *from;
-  return m;
-}
-
-Matrix SlabSolver::Fringes::entry(std::size_t order, int mode) const {
-  return mode_of(entry_, solver_.entry_.size(), order, mode);
+SlabSolver::Fringes::Fringes(const SlabSolver& solver, std::span<const double> orders) : solver_(solver) {
+  const std::vector<double> entry = solver.moments(solver.entry_, solver.interface_.film, true, orders);
+  const std::vector<double> back =
+      solver.moments(solver.thrown_back_, solver.interface_.film_below, false, orders);
+  const int n = solver.nodes_.size(), cosines = static_cast<int>(solver.cosines_.size());
+  modes_.resize(orders.size(), std::vector<Mode>(solver.modes_, {Matrix(cosines, n), Matrix(n)}));
+  const double *e = entry.data(), *f = back.data();
+  for (int mode = 0; mode < solver.modes_; ++mode) {
+    for (int c = 0; c < cosines; ++c)
+      for (int to = 0; to < n; ++to)
+        for (auto& modes : modes_) modes[mode].entry.row(c)[to] = *e++;
+    for (int from = 0; from < n; ++from)
+      for (int to = 0; to < n; ++to)
+        for (auto& modes : modes_) modes[mode].thrown_back.row(to)[from] = *f++;
+  }
 }
 
 SlabSolver::Response SlabSolver::Fringes::response(std::size_t order, double depth) const {
@@ -340,8 +339,7 @@ SlabSolver::Response SlabSolver::Fringes::response(std::size_t order, double dep
   for (int mode = 0; mode < solver_.modes_; ++mode) {
     // F, and E with what the base sends up, if anything does, as one more column.
     const bool has_base = mode == 0;
-    const Matrix sees = entry(order, mode);
-    const Matrix back = transposed(mode_of(thrown_back_, n, order, mode));
+    const auto& [sees, back] = modes_[order][mode];
     Matrix enters(n, cosines + has_base);
     for (int c = 0; c < cosines; ++c)
       for (int to = 0; to < n; ++to) enters.row(to)[c] = sees.row(c)[to];

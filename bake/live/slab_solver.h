@@ -84,13 +84,13 @@ class SlabSolver {
 
    private:
     friend class SlabSolver;
-    Matrix entry(std::size_t order, int mode) const;  // E by (cosine, to)
-    Matrix mode_of(const std::vector<double>& moments, std::size_t rows, std::size_t order, int mode) const;
+    struct Mode {
+      Matrix entry;        // E, by (cosine, to)
+      Matrix thrown_back;  // F, by (to, from)
+    };
 
     const SlabSolver& solver_;
-    int count_;                        // of orders
-    std::vector<double> thrown_back_;  // F by (mode, from, to, order)
-    std::vector<double> entry_;        // E by (mode, cosine, to, order)
+    std::vector<std::vector<Mode>> modes_;  // by (order, mode)
   };
 
   // The film at one thickness and all wavelengths, for many depths.
@@ -160,6 +160,8 @@ class SlabSolver {
   Facets facets_thrown_back(int from) const;
   Facet facet(double cosine, double share, const Vec3& on) const;
   int modes_above(double faintest) const;
+  std::vector<double> moments(const std::vector<Facets>& rows, const walk::FilmSide& film, bool lets_through,
+                              std::span<const double> orders) const;
   Phase phase(int mode) const;
   Layer make_layer(double depth) const;
   void double_up(int mode, double depth, Matrix& r, Matrix& t) const;

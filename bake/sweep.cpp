@@ -304,7 +304,8 @@ class Sweep {
       return table_.transmittance({parameters.film_thickness_nm, parameters.base_ior, cosine});
     };
     std::vector<Rgb> t_o;
-    for (const Vec3& w : wo_) t_o.push_back(transmittance(w.z));
+    for (std::size_t o = 0; o < wo_.size(); ++o)  // the azimuths of a cosine share it
+      t_o.push_back(o > 0 && wo_[o].z == wo_[o - 1].z ? t_o.back() : transmittance(wo_[o].z));
     for (std::size_t i = 0; i < wi_.size(); ++i) {
       const Rgb t_i = transmittance(wi_[i].z);
       for (std::size_t o = 0; o < wo_.size(); ++o)

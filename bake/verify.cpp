@@ -205,7 +205,7 @@ double quantile(std::vector<double> values, double q) {
 
 Estimator default_truth(const Recipe& recipe) {
   constexpr double kFinestByWalks = 0.005;  // finer, PFMC would take hours to show
-  if ((recipe.material.is_plain() || SlabSolver::solves(recipe.material)) &&
+  if ((ExactRest::is_valid_for(recipe.material) || SlabSolver::solves(recipe.material)) &&
       recipe.accuracy.tolerance_median < kFinestByWalks)
     return Estimator::exact;
   return recipe.material.scatters() ? recipe.accuracy.estimator : Estimator::pfmc;

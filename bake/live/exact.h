@@ -72,6 +72,11 @@ class ExactTriple {
 
 class ExactRest {
  public:
+  // No scattering, facets met once.
+  static bool is_valid_for(const Material& material) {
+    return !material.scatters() && !material.has_multiple_facets();
+  }
+
   // Of `material` the albedo gives way to that of the wavelengths, and its absorption is scaled by theirs.
   ExactRest(const Material& material, const Wavelengths& wavelengths, const ExactResolution& resolution = {});
 

@@ -26,8 +26,9 @@ std::string obstacle(const Material& material) {
     return fmt::format("key 'absorption_path': found {}; the exact evaluator of a renderer allows {}",
                        to_string(material.absorption_path), to_string(AbsorptionPath::sum));
   if (!material.roughness.is_isotropic())
-    return fmt::format("key 'roughness': found {}; the exact evaluator of a renderer allows an isotropic film",
-                       to_string(material.roughness));
+    return fmt::format(
+        "key 'roughness': found {}; the exact evaluator of a renderer allows an isotropic film",
+        to_string(material.roughness));
   return fmt::format(
       "key 'film_thickness_nm': found {:g}; the exact evaluator of a renderer allows 0 to {:g} for a rough "
       "film",

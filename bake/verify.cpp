@@ -121,10 +121,7 @@ class PointCheck {
 
   std::vector<Rgb> exact_rest() const {
     if (bsdf_->material().scatters()) return solved_rest();
-    const ExactRest exact(bsdf_->material(), wavelengths_);
-    std::vector<Rgb> live;
-    for (const Vec3& wo : directions_.wo) live.push_back(exact.rest(wo, wi_));
-    return live;
+    return ExactRest(bsdf_->material(), wavelengths_).rest(directions_.wo, wi_);
   }
 
   std::vector<Rgb> solved_rest() const {

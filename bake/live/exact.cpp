@@ -97,26 +97,22 @@ ExactTriple::Vectors ExactTriple::on_nodes(const Vec3& w) const {
   return sum;
 }
 
-Rgb ExactTriple::rest_of_product(const Vec3& wo, const Vec3& wi) const {
-  const auto out = film_.passages(wo), in = film_.passages(wi);
-  if (out.empty() || in.empty()) return {};
-  const Vectors v_out = towards_nodes(out[0].cosine), v_in = towards_nodes(in[0].cosine);
-  Rgb visits = attenuated(out[0].cosine, in[0].cosine);
-  for (int c = 0; c < 3; ++c) visits[c] += base_albedo_[c] * dot(multiply(v_in[c], visits_[c]), v_out[c]);
-  return base_albedo_ * (out[0].power * in[0].power) * visits;
+ExactTriple::Side ExactTriple::side(const Vec3& w) const {
+  if (material_.absorption_path == AbsorptionPath::sum) return {arriving(w), {}, 0};
+  if (!film_.has_single_crossing()) return {{}, on_nodes(w), 0};
+  const auto passages = film_.passages(w);  // none under total reflection
+  const PassagePoint passage = passages.empty() ? PassagePoint{1, Rgb()} : passages.front();
+  return {passage.power, towards_nodes(passage.cosine), passage.cosine};
 }
 
-Rgb ExactTriple::rest_through_facets(const Vec3& wo, const Vec3& wi) const {
-  const auto out = on_nodes(wo), in = on_nodes(wi);
-  Rgb sum;
-  for (int c = 0; c < 3; ++c) sum[c] = std::max(0.0, dot(multiply(in[c], visits_[c]), out[c]));
-  return sum;
-}
-
-Rgb ExactTriple::rest(const Vec3& wo, const Vec3& wi) const {
-  if (material_.absorption_path == AbsorptionPath::sum) return gain() * (arriving(wo) * arriving(wi));
-  return material_.radiance_scale() *
-         (film_.has_single_crossing() ? rest_of_product(wo, wi) : rest_through_facets(wo, wi));
+Rgb ExactTriple::rest(const Side& wo, const Side& wi) const {
+  if (material_.absorption_path == AbsorptionPath::sum) return gain() * (wo.power * wi.power);
+  Rgb visits;
+  for (int c = 0; c < 3; ++c) visits[c] = dot(multiply(wi.on_nodes[c], visits_[c]), wo.on_nodes[c]);
+  if (!film_.has_single_crossing())
+    return material_.radiance_scale() * transform(visits, [](double x) { return std::max(0.0, x); });
+  const Rgb first = attenuated(wo.cosine, wi.cosine);
+  return material_.radiance_scale() * base_albedo_ * (wo.power * wi.power) * (first + base_albedo_ * visits);
 }
 
 Rgb ExactTriple::rest_albedo(const Vec3& w) const {
@@ -160,9 +156,17 @@ Rgb ExactRest::fold(F of_triple) const {
   return wavelengths_.fold(each(of_triple));
 }
 
-Rgb ExactRest::rest(const Vec3& wo, const Vec3& wi) const {
-  if (wo.z <= 0 || wi.z <= 0) return {};
-  return fold([&](const ExactTriple& triple) { return triple.rest(wo, wi); });
+std::vector<Rgb> ExactRest::rest(std::span<const Vec3> wo, const Vec3& wi) const {
+  std::vector<Rgb> values(wo.size());
+  if (wi.z <= 0) return values;
+  std::vector<ExactTriple::Side> sides;
+  for (const ExactTriple& triple : triples_) sides.push_back(triple.side(wi));
+  for (std::size_t k = 0; k < wo.size(); ++k) {
+    if (wo[k].z <= 0) continue;
+    auto side = sides.begin();
+    values[k] = fold([&](const ExactTriple& triple) { return triple.rest(triple.side(wo[k]), *side++); });
+  }
+  return values;
 }
 
 Rgb ExactRest::albedo(const Vec3& w) const {

@@ -65,10 +65,7 @@ struct Conic {
 class VisibleNormals {
  public:
   VisibleNormals(const Vec3& w, const Roughness& roughness, const ThinFilm& film, double ratio)
-      : w_(w),
-        roughness_(roughness),
-        ratio_(ratio),
-        axis_(normalize(stretched(w))) {
+      : w_(w), roughness_(roughness), ratio_(ratio), axis_(normalize(stretched(w))) {
     const double sine = std::hypot(axis_.x, axis_.y);
     const double x = sine > 0 ? axis_.x / sine : 1, y = sine > 0 ? axis_.y / sine : 0;
     forward_ = {axis_.z * x, axis_.z * y, -sine};
@@ -249,7 +246,8 @@ int FilmIntegrals::visible_nodes() const {
 }
 
 // Calls visit(w, facet, weight) for normals visible from w, turned to azimuth 0 if the film is isotropic; the
-// weights of all normals sum to 1. What mirrors w under the horizon is left out if only_mirrored, without a kink for the quadrature.
+// weights of all normals sum to 1. What mirrors w under the horizon is left out if only_mirrored, without a
+// kink for the quadrature.
 template <class F>
 void FilmIntegrals::visit_visible(const Vec3& w, bool only_mirrored, F visit) const {
   const Vec3 from = material_.roughness.is_isotropic() ? direction_from_cosine(w.z, 0) : w;
@@ -371,9 +369,8 @@ void FilmIntegrals::visit_azimuths(Event event, double theta, const std::vector<
   };
   // Both z > 0.
   const double height = cosine * cos_h, swing = sine * sin_h;
-  const double lowest = mirrored
-                            ? height / swing
-                            : std::min(height / swing, partner_cosine * cos_h / (partner_sine * sin_h));
+  const double lowest =
+      mirrored ? height / swing : std::min(height / swing, partner_cosine * cos_h / (partner_sine * sin_h));
   const double start = mirrored ? std::acos(std::min(1.0, lowest)) : 0;
   const double end = std::acos(-std::min(1.0, lowest));
   for (int k = 0; k < azimuths_.size(); ++k) {

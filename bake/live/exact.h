@@ -42,19 +42,22 @@ class ExactTriple {
   ExactTriple(const Material& material, const Rgb& wavelengths_nm, const Rgb& albedo, const Rgb& absorption,
               const ExactResolution& resolution);
 
+  // Ways to the base, the same for all triples of no shorter wavelengths.
+  std::vector<Passage> passages(const Vec3& w) const { return film_.passages(w); }
+
   // What rest() needs of a direction with w.z > 0, and what takes the time.
   struct Side {
     Rgb power;                       // A; product without bending at facets: what passes,
     std::array<Vector, 3> on_nodes;  // v / kd there,
     double cosine = 0;               // below the film; product through facets: p_t at nodes alone
   };
-  Side side(const Vec3& w) const;
+  Side side(const std::vector<Passage>& passages) const;
   Rgb rest(const Side& wo, const Side& wi) const;
   Rgb first_albedo(const Vec3& w) const { return film_.first_albedo(w); }
-  Rgb rest_albedo(const Vec3& w) const;
+  Rgb rest_albedo(const std::vector<Passage>& passages) const;
 
   // Path "sum" alone: rest = gain() A(wo) A(wi) with A = arriving().
-  Rgb arriving(const Vec3& w) const;
+  Rgb arriving(const std::vector<Passage>& passages) const;
   Rgb gain() const { return gain_ * material_.radiance_scale(); }
 
  private:
@@ -66,7 +69,8 @@ class ExactTriple {
   Rgb attenuation(double exponent) const;
   Rgb attenuated(double cos_i, double cos_o) const;
   Vectors towards_nodes(double cosine) const;
-  Vectors on_nodes(const Vec3& w) const;
+  Vectors on_nodes(const std::vector<Passage>& passages) const;
+  Rgb passing(const std::vector<Passage>& passages) const;
 
   Material material_;
   Rgb base_albedo_, absorption_;
@@ -107,9 +111,11 @@ class ExactRest {
   std::vector<double> each(F of_triple) const;
   template <class F>
   Rgb fold(F of_triple) const;
+  std::vector<Passage> passages(const Vec3& w) const { return triples_[finest_].passages(w); }
 
   Wavelengths wavelengths_;
   std::vector<ExactTriple> triples_;  // the last one filled up with its last wavelength
+  std::size_t finest_;                // of them has the shortest wavelength
 };
 
 }  // namespace sunbeam

@@ -245,9 +245,9 @@ int FilmIntegrals::visible_nodes() const {
   return std::min(wanted, std::max(kMaxVisibleNodes, resolution_.visible));
 }
 
-// Calls visit(w, facet, weight) for normals visible from w, turned to azimuth 0 if the film is isotropic; the
-// weights of all normals sum to 1. What mirrors w under the horizon is left out if only_mirrored, without a
-// kink for the quadrature.
+// Calls visit(w, normal, weight) for normals visible from w, turned to azimuth 0 if the film is isotropic;
+// the weights of all normals sum to 1. What mirrors w under the horizon is left out if only_mirrored, without
+// a kink for the quadrature.
 template <class F>
 void FilmIntegrals::visit_visible(const Vec3& w, bool only_mirrored, F visit) const {
   const Vec3 from = material_.roughness.is_isotropic() ? direction_from_cosine(w.z, 0) : w;
@@ -257,40 +257,34 @@ void FilmIntegrals::visit_visible(const Vec3& w, bool only_mirrored, F visit) co
     const double end = only_mirrored ? visible.mirrored_end(azimuth, edges.back()) : edges.back();
     for (double& edge : edges) edge = std::min(edge, end);
     for_each_node(edges, visible_, [&](double polar, double dpolar) {
-      const Vec3 h = visible.normal(polar, azimuth);
-      const FilmPower power = interface_.power(std::clamp(dot(from, h), 0.0, 1.0));
-      visit(from, Facet{h, power, mean(power.reflectance)}, visible.density(polar) * dpolar * dazimuth);
+      visit(from, visible.normal(polar, azimuth), visible.density(polar) * dpolar * dazimuth);
     });
   });
 }
 
-std::vector<PassagePoint> FilmIntegrals::passages(const Vec3& w) const {
-  std::vector<PassagePoint> points;
-  if (w.z <= 0) return points;
-  if (interface_.is_smooth()) {
-    const FilmPower power = interface_.power(w.z);
-    const auto passage = interface_.cross(w, {{0, 0, 1}, power, mean(power.reflectance)});
-    if (passage) points.push_back({passage->inside.z, passage->weight});
-    return points;
-  }
-  if (has_single_crossing()) points.push_back({w.z, Rgb()});
-  visit_visible(w, false, [&](const Vec3& from, const Facet& facet, double weight) {
-    const auto passage = interface_.cross(from, facet);
-    if (!passage) return;
-    if (has_single_crossing())
-      points.front().power += passage->weight * weight;
-    else
-      points.push_back({passage->inside.z, passage->weight * weight});
-  });
-  return points;
+std::vector<Passage> FilmIntegrals::passages(const Vec3& w) const {
+  const FilmPower all{Rgb(0), Rgb(1)};
+  std::vector<Passage> result;
+  const auto add = [&](const Vec3& from, const Vec3& normal, double weight) {
+    const double cosine = std::clamp(dot(from, normal), 0.0, 1.0);
+    if (const auto crossing = interface_.cross(from, {normal, all, 0}))
+      result.push_back({cosine, crossing->inside.z, weight * crossing->weight.r});
+  };
+  if (w.z <= 0) return result;
+  if (interface_.is_smooth())
+    add(w, {0, 0, 1}, 1);
+  else
+    visit_visible(w, false, add);
+  return result;
 }
 
 Rgb FilmIntegrals::first_albedo(const Vec3& w) const {
   if (w.z <= 0) return {};
   if (interface_.is_smooth()) return interface_.power(w.z).reflectance;
   Rgb sum;
-  visit_visible(w, true, [&](const Vec3& from, const Facet& facet, double weight) {
-    if (const auto up = interface_.reflect_up(from, facet)) sum += up->weight * weight;
+  visit_visible(w, true, [&](const Vec3& from, const Vec3& normal, double weight) {
+    const FilmPower power = interface_.power(std::clamp(dot(from, normal), 0.0, 1.0));
+    if (const auto up = interface_.reflect_up(from, {normal, power, 0})) sum += up->weight * weight;
   });
   return sum;
 }

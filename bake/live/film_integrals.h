@@ -24,10 +24,11 @@ struct ExactResolution {
   int visible = 28;    // normals visible from one direction: polar, and 3/4 of it a panel of azimuths
 };
 
-// Power arriving along w that reaches the base at `cosine`.
-struct PassagePoint {
-  double cosine;
-  Rgb power;
+// A way through the film to the base, whatever the wavelength.
+struct Passage {
+  double facet_cosine;  // outside
+  double cosine;        // below, as the light arrives at the base
+  double share;         // of the power if the film lets all through
 };
 
 class FilmIntegrals {
@@ -38,8 +39,12 @@ class FilmIntegrals {
   // False if facets bend light, so that passages() is a quadrature over many cosines.
   bool has_single_crossing() const { return !interface_.has_glossy_crossing(); }
 
-  // p_t(w -> m) dm as points of m.z; their powers sum to the share of w's power that reaches the base.
-  std::vector<PassagePoint> passages(const Vec3& w) const;
+  // Ways of light along w, for all wavelengths not shorter than those of this object; none under total
+  // reflection. p_t(w -> m) dm is share times transmittance() at m.z = cosine.
+  std::vector<Passage> passages(const Vec3& w) const;
+  Rgb transmittance(const Passage& passage) const {
+    return interface_.power(passage.facet_cosine).transmittance;
+  }
 
   // Directional albedo of the first surface, a smooth film's Dirac included.
   Rgb first_albedo(const Vec3& w) const;

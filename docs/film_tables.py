@@ -35,8 +35,6 @@ def overrides(surface, transmission, path, mode):
     keys = {"material.roughness": SURFACES[surface], "material.transmission": transmission,
             "material.absorption_path": path, "spectrum.mode": mode, "table.encoding": "factored",
             "accuracy.tolerance_median": "1", "accuracy.tolerance_p99": "1"}
-    if "(" in surface:
-        keys["table.azimuths"] = "16" if path == "sum" else "12"
     return [word for key, value in keys.items() for word in ("--set", f"{key}={value}")]
 
 

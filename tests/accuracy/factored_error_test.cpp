@@ -16,7 +16,7 @@ class FactoredError : public ::testing::TestWithParam<test::SpectralRow> {
     const auto& [row, spectrum] = GetParam();
     return is_whole() ? test::factored(row, spectrum) : test::lower_half(row, spectrum);
   }
-  // Quadrature through rough films takes up to half a second a point at all wavelengths.
+  // Quadrature through rough films takes up to a third of a second a point at all wavelengths.
   int points() const { return GetParam().row.is_smooth() || is_whole() ? 60 : 10; }
 };
 

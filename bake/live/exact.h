@@ -18,7 +18,7 @@
 //   rough film over a lower index (n2 < n0 <= 2)  1e-7 typically, 1e-3 at most (400 materials of its own);
 //   the nodes follow the directions refracted to grazing the base, and a film of lower index that light
 //   tunnels;
-//   anisotropic film, both roughnesses from 0.004  the same: 3e-4 at most, 4e-4 over a lower index (240).
+//   anisotropic film, either roughness from 0.004  the same: 3e-4 at most, 1e-3 over a lower index (300).
 // Values below 1e-20, deep in the pigment at grazing angles, may lose all relative precision.
 //
 // Wavelengths are independent and worked through three at a time. Times on one core for 3 wavelengths (20):

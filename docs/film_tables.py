@@ -56,12 +56,12 @@ def row_of(name, row):
     at = (f"{row['film_thickness_nm']:.0f} nm, {row['base_ior']:.3f}, {row['absorption_per_nm']:.3f} / nm, "
           f"{row['theta_i_deg']:.0f}°")
     return (f"| {name} | {percent('error_median')} | {percent('error_p99')} | {percent('error_max')} | {at} | "
-            f"{row['bytes'] / 1000:.0f} kB |")
+            f"{row['bytes'] / 1000:.0f} kB | {row['points']} |")
 
 
 def write_docs(rows):
-    head = ["| film, transmission, path, spectrum | median | p99 | max | where: film, base IOR, absorption, angle | file |",
-            "|---|---|---|---|---|---|"]
+    head = ["| film, transmission, path, spectrum | median | p99 | max | where: film, base IOR, absorption, angle | file | points |",
+            "|---|---|---|---|---|---|---|"]
     page = DOCS / "performance.md"
     block = "\n".join(head + [row_of(name, row) for name, row in rows.items()])
     text, count = re.subn(r"(<!-- films -->\n).*?(\n<!-- end of films -->)", lambda m: m[1] + block + m[2],

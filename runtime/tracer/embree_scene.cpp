@@ -176,62 +176,79 @@ Geometry make_mesh(RTCDevice device, const Surface& surface) {
 
 // --- hits: `point` is where Embree's distance, in single precision, leads along the ray ---
 
-void find_on_sphere(const Surface& surface, const Vec3& point, SurfaceHit& hit) {
+// Made of its members in place: SurfaceHit is too large to be copied.
+using MaybeHit = std::optional<SurfaceHit>;
+
+MaybeHit meet_sphere(const Surface& surface, const Ray& ray, const Vec3& point) {
   const Sphere& sphere = *surface.sphere;
-  const Vec3 n = normalize(point - sphere.center);
-  hit.position = sphere.center + sphere.radius * n;
-  hit.geometric_normal = hit.shading_normal = n;
-  hit.tangent = unit_or_zero({-n.y, n.x, 0});
-  if (!surface.has_coordinates) return;
-  // u and v, longitude and latitude, from 0 to 1 each.
-  const double from_axis = std::hypot(n.x, n.y), longitude = std::atan2(n.y, n.x);
-  hit.uv = {longitude / (2 * kPi) + (longitude < 0 ? 1 : 0), std::atan2(n.z, from_axis) / kPi + 0.5};
-  hit.derivatives = {2 * kPi * sphere.radius * from_axis * hit.tangent,
-                     kPi * sphere.radius * cross(n, hit.tangent)};
+  const Vec3 n = normalize(point - sphere.center), position = sphere.center + sphere.radius * n,
+             tangent = unit_or_zero({-n.y, n.x, 0});
+  Point2 uv;  // longitude and latitude, from 0 to 1 each
+  UvDerivatives derivatives;
+  if (surface.has_coordinates) {
+    const double from_axis = std::hypot(n.x, n.y), longitude = std::atan2(n.y, n.x);
+    uv = {longitude / (2 * kPi) + (longitude < 0 ? 1 : 0), std::atan2(n.z, from_axis) / kPi + 0.5};
+    derivatives = {2 * kPi * sphere.radius * from_axis * tangent, kPi * sphere.radius * cross(n, tangent)};
+  }
+  return MaybeHit(std::in_place, position, n, n, tangent, uv, derivatives,
+                  dot(position - ray.origin, ray.direction), surface.offset, surface.object, surface.light);
 }
 
-void find_on_triangle(const Surface& surface, const RTCHit& found, const Vec3& point, SurfaceHit& hit) {
-  const double u = found.u, v = found.v;
-  const auto mix = [&](const auto& a, const auto& b, const auto& c) {
+// A weighted mean of what the three vertices have.
+struct Barycentric {
+  explicit Barycentric(const RTCHit& hit) : u(hit.u), v(hit.v) {}
+  template <class T>
+  T operator()(const T& a, const T& b, const T& c) const {
     return (1 - u - v) * a + u * b + v * c;
-  };
+  }
+  double u, v;
+};
+
+Vec3 tangent_at(const Surface& surface, unsigned triangle, const Barycentric& mix) {
+  if (surface.mesh->normals.empty()) return surface.tangents[triangle];
+  const auto [i, j, k] = surface.mesh->triangles[triangle];
+  return unit_or_zero(mix(surface.tangents[i], surface.tangents[j], surface.tangents[k]));
+}
+
+MaybeHit meet_triangle(const Surface& surface, const RTCHit& found, const Ray& ray, const Vec3& point) {
+  const Barycentric mix(found);
   const Triangle& triangle = surface.triangles[found.primID];
   const Vec3 stored = to_double(triangle.normal);
   const Vec3 normal = (1.5 - 0.5 * dot(stored, stored)) * stored;  // a unit vector in double precision too
-  hit.position = point - dot(point - to_double(triangle.corner), normal) * normal;
-  hit.geometric_normal = normal;
-
+  const Vec3 position = point - dot(point - to_double(triangle.corner), normal) * normal;
   const auto& [a, b, c] = triangle.normals;
-  const Vec3 shading = mix(to_double(a), to_double(b), to_double(c));
-  const double size = std::copysign(length(shading), dot(shading, normal));
-  hit.shading_normal = size != 0 ? shading / size : normal;
+  const Vec3 mixed = mix(to_double(a), to_double(b), to_double(c));
+  const double size = std::copysign(length(mixed), dot(mixed, normal));
+  const Vec3 shading = size != 0 ? mixed / size : normal;
 
-  if (surface.tangents.empty() && surface.derivatives.empty()) return;
-  const Mesh& mesh = *surface.mesh;
-  const auto [i, j, k] = mesh.triangles[found.primID];
-  if (!surface.tangents.empty())
-    hit.tangent = mesh.normals.empty()
-                      ? surface.tangents[found.primID]
-                      : unit_or_zero(mix(surface.tangents[i], surface.tangents[j], surface.tangents[k]));
-  if (surface.derivatives.empty()) return;
-  const Point2 &uv_i = mesh.uvs[i], &uv_j = mesh.uvs[j], &uv_k = mesh.uvs[k];
-  hit.uv = {mix(uv_i.x, uv_j.x, uv_k.x), mix(uv_i.y, uv_j.y, uv_k.y)};
-  const UvDerivatives &d = surface.derivatives[i], &e = surface.derivatives[j], &f = surface.derivatives[k];
-  hit.derivatives = {mix(d.du, e.du, f.du), mix(d.dv, e.dv, f.dv)};
+  Vec3 tangent;
+  Point2 uv;
+  UvDerivatives derivatives;
+  if (!surface.tangents.empty()) tangent = tangent_at(surface, found.primID, mix);
+  if (!surface.derivatives.empty()) {
+    const auto [i, j, k] = surface.mesh->triangles[found.primID];
+    const auto& uvs = surface.mesh->uvs;
+    uv = {mix(uvs[i].x, uvs[j].x, uvs[k].x), mix(uvs[i].y, uvs[j].y, uvs[k].y)};
+    const UvDerivatives &d = surface.derivatives[i], &e = surface.derivatives[j], &f = surface.derivatives[k];
+    derivatives = {mix(d.du, e.du, f.du), mix(d.dv, e.dv, f.dv)};
+  }
+  return MaybeHit(std::in_place, position, normal, shading, tangent, uv, derivatives,
+                  dot(position - ray.origin, ray.direction), surface.offset, surface.object, surface.light);
 }
 
-RTCRay to_embree(const Ray& ray, float distance) {
-  RTCRay result{};
-  result.org_x = static_cast<float>(ray.origin.x);
-  result.org_y = static_cast<float>(ray.origin.y);
-  result.org_z = static_cast<float>(ray.origin.z);
-  result.dir_x = static_cast<float>(ray.direction.x);
-  result.dir_y = static_cast<float>(ray.direction.y);
-  result.dir_z = static_cast<float>(ray.direction.z);
-  result.tnear = 0;
-  result.tfar = distance;
-  result.mask = ~0u;
-  return result;
+// Member by member: clearing all of it first takes longer.
+void set_ray(RTCRay& to, const Ray& ray, float distance) {
+  to.org_x = static_cast<float>(ray.origin.x);
+  to.org_y = static_cast<float>(ray.origin.y);
+  to.org_z = static_cast<float>(ray.origin.z);
+  to.tnear = 0;
+  to.dir_x = static_cast<float>(ray.direction.x);
+  to.dir_y = static_cast<float>(ray.direction.y);
+  to.dir_z = static_cast<float>(ray.direction.z);
+  to.time = 0;
+  to.tfar = distance;
+  to.mask = ~0u;
+  to.id = to.flags = 0;
 }
 
 }  // namespace
@@ -315,30 +332,22 @@ EmbreeScene::EmbreeScene(const Scene& scene, const std::function<bool(std::size_
 EmbreeScene::~EmbreeScene() = default;
 
 std::optional<SurfaceHit> EmbreeScene::intersect(const Ray& ray) const {
-  std::optional<SurfaceHit> result;
-  RTCRayHit query{to_embree(ray, kInfinity), {}};
-  query.hit.geomID = query.hit.primID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  RTCRayHit query;
+  set_ray(query.ray, ray, kInfinity);
+  query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcIntersect1(impl_->scene.get(), &context, &query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return result;
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
   const Surface& surface = impl_->surfaces[query.hit.geomID];
   const Vec3 point = ray.origin + double{query.ray.tfar} * ray.direction;
-  SurfaceHit& hit = result.emplace();  // in place: it is large
-  if (surface.sphere)
-    find_on_sphere(surface, point, hit);
-  else
-    find_on_triangle(surface, query.hit, point, hit);
-  hit.distance = dot(hit.position - ray.origin, ray.direction);
-  hit.offset = surface.offset;
-  hit.object = surface.object;
-  hit.light = surface.light;
-  return result;
+  return surface.sphere ? meet_sphere(surface, ray, point) : meet_triangle(surface, query.hit, ray, point);
 }
 
 bool EmbreeScene::occluded(const Ray& ray, double distance) const {
-  RTCRay query = to_embree(ray, static_cast<float>(distance * kShadowFraction));
+  RTCRay query;
+  set_ray(query, ray, static_cast<float>(distance * kShadowFraction));
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded1(impl_->scene.get(), &context, &query);

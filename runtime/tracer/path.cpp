@@ -114,10 +114,9 @@ inline Rgb PathTracer::direct_light(const Vertex& vertex, Rng& rng, PathCounts& 
   if (wi.z <= 0) return {};
   const double shadowing = vertex.shadowing(light->wi);
   if (shadowing == 0) return {};
-  const EvalPdf value = vertex.bsdf->eval_pdf(vertex.wo, wi, rng);
-  if (is_black(value.f)) return {};
   ++counts.rays;
   if (geometry_.occluded(vertex.leave(light->wi), light->distance)) return {};
+  const EvalPdf value = vertex.bsdf->eval_pdf(vertex.wo, wi, rng);
   const double weight = light->is_dirac ? 1 : power_heuristic(light->pdf, value.pdf);
   return value.f * light->radiance * (wi.z * weight * shadowing / light->pdf);
 }

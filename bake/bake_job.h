@@ -33,6 +33,11 @@ class Blocks {
   virtual std::string values(std::size_t task) const = 0;
 };
 
+struct TaskRange {
+  std::size_t first, end;
+  std::size_t size() const { return end - first; }
+};
+
 class BakeJob {
  public:
   virtual ~BakeJob() = default;
@@ -42,9 +47,10 @@ class BakeJob {
   // on the recipe alone.
   virtual double cost(std::size_t task) const = 0;
 
-  // First tasks of the runs of tasks that share a preparation, which comes before any of them.
+  // First tasks of the groups that share a preparation.
   virtual std::vector<std::size_t> groups() const { return {0}; }
-  virtual void prepare(std::size_t /*group*/, int /*threads*/) {}
+  // Before any of `tasks`, which are of one group; what was prepared before may be forgotten.
+  virtual void prepare(const TaskRange& /*tasks*/, int /*threads*/) {}
 
   // Thread safe, beside other tasks of its group.
   virtual Block run(std::size_t task) const = 0;

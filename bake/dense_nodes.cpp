@@ -20,6 +20,7 @@ std::vector<double> nodes_round(std::size_t count) {
 
 // To three binary digits, so that it takes next to no room in a file. Nobody needs a noise more exactly.
 double coarse(double standard_error) {
+  if (standard_error == 0) return 0;
   int exponent = 0;
   const double fraction = std::frexp(standard_error, &exponent);
   return std::ldexp(std::round(8 * fraction) / 8, exponent);
@@ -65,6 +66,7 @@ DenseNodes::DenseNodes(const Recipe& recipe)
   outline_.symmetry = symmetry_of(recipe);
   outline_.frame = recipe.table.frame;
   bake_film(recipe, outline_);
+  frame_.emplace(recipe.material, outline_.first_visit);
   const auto axes = rest_axes(recipe);
   outline_.remainder = NdArray::outline("remainder", axes, recipe.table.precision);
   outline_.rest_stderr = NdArray::outline("rest_stderr", axes, Precision::single_float, 1);
@@ -93,12 +95,13 @@ DenseNodes::Values DenseNodes::values(std::size_t node, std::vector<Row>& rows) 
 
 void DenseNodes::frame(std::size_t node, std::vector<Row>& rows) const {
   const Parameters p = parameters(node);
-  const RestFrame frame(p.applied_to(recipe_.material), outline_.first_visit);
+  const RestFrame frame = frame_->over(p.applied_to(recipe_.material));
   const auto transmittance = [&](double cosine) {
     return outline_.transmittance({p.film_thickness_nm, p.base_ior, cosine});
   };
   std::vector<Rgb> t_o;
-  for (const Vec3& w : wo_) t_o.push_back(transmittance(w.z));
+  for (std::size_t o = 0; o < wo_.size(); ++o)  // the azimuths of a cosine share it
+    t_o.push_back(o > 0 && wo_[o].z == wo_[o - 1].z ? t_o.back() : transmittance(wo_[o].z));
   for (std::size_t i = 0; i < wi_.size(); ++i) {
     const Rgb t_i = transmittance(wi_[i].z);
     for (std::size_t o = 0; o < wo_.size(); ++o)

@@ -1,6 +1,8 @@
 // The parameter nodes of a dense table, and what the rest at one of them becomes in the table's arrays.
 #pragma once
 
+#include <optional>
+
 #include "bake/orbits.h"
 #include "bake/recipe.h"
 #include "sunbeam/table.h"
@@ -42,6 +44,7 @@ class DenseNodes {
   std::vector<Vec3> wi_, wo_;
   std::size_t size_;
   Orbits orbits_;
+  std::optional<RestFrame> frame_;
 };
 
 }  // namespace sunbeam

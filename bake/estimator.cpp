@@ -16,9 +16,6 @@ std::string obstacle_to_quadrature(const Material& material) {
                        material.scattering_per_nm);
   if (material.has_multiple_facets())
     return "key 'microfacet': found multiple; the exact evaluator allows single";
-  if (!material.roughness.is_isotropic())
-    return fmt::format("key 'roughness': found {}; the exact evaluator allows an isotropic film",
-                       to_string(material.roughness));
   return "";
 }
 
@@ -28,6 +25,10 @@ std::string obstacle(const Material& material) {
   if (material.absorption_path != AbsorptionPath::sum)
     return fmt::format("key 'absorption_path': found {}; the exact evaluator of a renderer allows {}",
                        to_string(material.absorption_path), to_string(AbsorptionPath::sum));
+  if (!material.roughness.is_isotropic())
+    return fmt::format(
+        "key 'roughness': found {}; the exact evaluator of a renderer allows an isotropic film",
+        to_string(material.roughness));
   return fmt::format(
       "key 'film_thickness_nm': found {:g}; the exact evaluator of a renderer allows 0 to {:g} for a rough "
       "film",

@@ -172,11 +172,12 @@ void read_albedo(const ConfigTable& config, Spectrum& spectrum, Material& materi
 }
 
 // Enough for the material's rest: a factored one is smooth in azimuth, but must be right to 0.1 %; a dense
-// one pays for each.
+// one pays for each, and so does path "product", for pairs of them.
 int default_azimuths(const Material& material) {
   if (material.is_plain()) return 1;
   if (material.roughness.is_isotropic()) return 9;
-  return material.scatters() || material.has_multiple_facets() ? 8 : 16;
+  if (material.scatters() || material.has_multiple_facets()) return 8;
+  return material.absorption_path == AbsorptionPath::sum ? 16 : 12;
 }
 
 // Only the noisiest cells have it, so the worst points of a table may take a good share of their tolerance.

@@ -28,15 +28,15 @@ class TaskRun {
     for (std::size_t group = 0; group < groups.size() && !stopped_; ++group) {
       const std::size_t end = group + 1 < groups.size() ? groups[group + 1] : job_.tasks();
       const auto from = std::lower_bound(missing_.begin(), missing_.end(), groups[group]);
-      run_group(group, {from, std::lower_bound(from, missing_.end(), end)});
+      run_group({from, std::lower_bound(from, missing_.end(), end)});
     }
     return !stopped_;
   }
 
  private:
-  void run_group(std::size_t group, const std::vector<std::size_t>& tasks) {
+  void run_group(const std::vector<std::size_t>& tasks) {
     if (tasks.empty() || should_stop()) return;
-    job_.prepare(group, settings_.threads);
+    job_.prepare({tasks.front(), tasks.back() + 1}, settings_.threads);
     std::atomic<std::size_t> next = 0;  // in order, so that what is done has few gaps
     run_parallel_tasks(tasks.size(), settings_.threads, {}, [&](std::size_t) {
       const std::size_t task = tasks[next++];

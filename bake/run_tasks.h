@@ -30,11 +30,6 @@ class BlocksInMemory : public BlockStore {
   std::vector<char> done_;
 };
 
-struct TaskRange {
-  std::size_t first, end;
-  std::size_t size() const { return end - first; }
-};
-
 // Shard `shard` (from 0) of `shards` of about equal cost: tasks that follow one another.
 TaskRange shard_of(const BakeJob& job, int shard, int shards);
 

@@ -2,10 +2,8 @@
 
 #include <half.h>
 
-#include <set>
-
 #include "bake/dense_nodes.h"
-#include "bake/live/slab_solver.h"
+#include "bake/live/slab_films.h"
 #include "bake/packed.h"
 #include "bake/parallel_tasks.h"
 
@@ -85,34 +83,31 @@ class SolvedJob : public BakeJob {
     return first;
   }
 
-  void prepare(std::size_t ior, int threads) override {
-    Material material = recipe_.material;
-    material.base_ior = recipe_.grid[1].nodes[ior];
-    solver_ = std::make_unique<SlabSolver>(material, nodes_.cosines());
-    std::set<double> depths;
-    for (const double absorption : recipe_.grid[2].nodes) {
-      material.absorption_per_nm = absorption;
-      for (const double relative : recipe_.spectrum.wavelengths(material).absorption)
-        depths.insert(material.optical_depth() * relative);
-    }
-    const std::vector<double> each(depths.begin(), depths.end());
-    run_parallel_tasks(each.size(), threads, {}, [&](std::size_t k) { solver_->add_depth(each[k]); });
+  void prepare(const TaskRange& tasks, int threads) override {
+    const std::vector<Axis>& grid = recipe_.grid;
+    const double base_ior = grid[1].nodes[tasks.first / order_.thicknesses];
+    const Material material = Parameters{grid[0].high(), base_ior, 0}.applied_to(recipe_.material);
+    films_ = std::make_unique<SlabFilms>(
+        material, recipe_.spectrum.wavelengths(material),
+        SlabFilms::Grid{grid[0].nodes, grid[2].nodes, nodes_.cosines(), nodes_.azimuths()});
+    films_->prepare(
+        tasks.first % order_.thicknesses, (tasks.end - 1) % order_.thicknesses + 1,
+        [&](std::size_t count, const auto& task) { run_parallel_tasks(count, threads, {}, task); });
   }
 
   Block run(std::size_t task) const override {
-    const std::size_t first = order_.first_node(task);
-    const Material at_first = nodes_.material(first);
-    const SlabSolver::Film film(*solver_, at_first.film_thickness_nm, recipe_.spectrum.wavelengths(at_first));
+    const std::size_t first = order_.first_node(task), places = nodes_.wo().size();
     Block block;
-    for (std::size_t node = first; node < first + order_.absorptions; ++node) {
-      const auto rest = film.rest(nodes_.material(node).optical_depth());
+    std::vector<Rgb> values(films_->cells());
+    for (std::size_t absorption = 0; absorption < order_.absorptions; ++absorption) {
+      films_->rest(task % order_.thicknesses, absorption, values);
       std::vector<Row> rows(nodes_.wi().size());
       for (std::size_t i = 0; i < rows.size(); ++i) {
-        for (std::size_t o = 0; o < nodes_.cosines().size(); ++o)
-          for (const double azimuth : nodes_.azimuths()) rows[i].value.push_back(rest.at(o, i, azimuth));
-        rows[i].standard_error.resize(nodes_.wo().size());
+        const auto from = values.begin() + static_cast<std::ptrdiff_t>(i * places);
+        rows[i].value.assign(from, from + static_cast<std::ptrdiff_t>(places));
+        rows[i].standard_error.resize(places);
       }
-      add(nodes_.values(node, rows).remainder, block.values);
+      add(nodes_.values(first + absorption, rows).remainder, block.values);
     }
     return block;
   }
@@ -137,7 +132,7 @@ class SolvedJob : public BakeJob {
   std::uint64_t seed_;
   DenseNodes nodes_;
   Order order_;
-  std::unique_ptr<SlabSolver> solver_;  // of the group that is prepared
+  std::unique_ptr<SlabFilms> films_;  // of the group that is prepared
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The dense encoding of a scattering pigment by adding and doubling (live/slab_solver.h). A task is one film
-// thickness at one base IOR, with all absorptions; the tasks of a base IOR share the pigment's layers.
+// The dense encoding of a scattering pigment by adding and doubling (live/slab_films.h). A task is one film
+// thickness at one base IOR, with all absorptions; the tasks of a base IOR share what is solved.
 #pragma once
 
 #include "bake/bake_job.h"

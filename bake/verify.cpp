@@ -125,10 +125,7 @@ class PointCheck {
 
   std::vector<Rgb> exact_rest() const {
     if (bsdf_->material().scatters()) return solved_rest();
-    const ExactRest exact(bsdf_->material(), wavelengths_);
-    std::vector<Rgb> live;
-    for (const Vec3& wo : directions_.wo) live.push_back(exact.rest(wo, wi_));
-    return live;
+    return ExactRest(bsdf_->material(), wavelengths_).rest(directions_.wo, wi_);
   }
 
   std::vector<Rgb> solved_rest() const {
@@ -209,7 +206,7 @@ double quantile(std::vector<double> values, double q) {
 
 Estimator default_truth(const Recipe& recipe) {
   constexpr double kFinestByWalks = 0.005;  // finer, PFMC would take hours to show
-  if ((recipe.material.is_plain() || SlabSolver::solves(recipe.material)) &&
+  if ((ExactRest::is_valid_for(recipe.material) || SlabSolver::solves(recipe.material)) &&
       recipe.accuracy.tolerance_median < kFinestByWalks)
     return Estimator::exact;
   return recipe.material.scatters() ? recipe.accuracy.estimator : Estimator::pfmc;

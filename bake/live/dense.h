@@ -49,10 +49,19 @@ inline Vector multiply(const Vector& x, const Matrix& a) {
 }
 
 inline Matrix multiply(const Matrix& a, const Matrix& b) {
-  Matrix c(a.size(), b.columns());
-  for (int i = 0; i < a.size(); ++i)
-    for (int k = 0; k < a.columns(); ++k)
-      if (a.row(i)[k] != 0) add_scaled(a.row(i)[k], b.row(k), b.columns(), c.row(i));
+  const int columns = b.columns();
+  Matrix c(a.size(), columns);
+  for (int i = 0; i < a.size(); ++i) {
+    double* __restrict y = c.row(i);
+    int k = 0;
+    // Four terms for each time a sum is fetched and put back.
+    for (; k + 4 <= a.columns(); k += 4) {
+      const double f0 = a.row(i)[k], f1 = a.row(i)[k + 1], f2 = a.row(i)[k + 2], f3 = a.row(i)[k + 3];
+      const double *x0 = b.row(k), *x1 = b.row(k + 1), *x2 = b.row(k + 2), *x3 = b.row(k + 3);
+      for (int j = 0; j < columns; ++j) y[j] = y[j] + f0 * x0[j] + f1 * x1[j] + f2 * x2[j] + f3 * x3[j];
+    }
+    for (; k < a.columns(); ++k) add_scaled(a.row(i)[k], b.row(k), columns, y);
+  }
   return c;
 }
 
@@ -63,6 +72,13 @@ inline Matrix one_minus(Matrix a) {
     a.row(i)[i] += 1;
   }
   return a;
+}
+
+inline Matrix transposed(const Matrix& a) {
+  Matrix t(a.columns(), a.size());
+  for (int i = 0; i < a.size(); ++i)
+    for (int j = 0; j < a.columns(); ++j) t.row(j)[i] = a.row(i)[j];
+  return t;
 }
 
 // (a + a^T) / 2.

@@ -77,61 +77,60 @@ ExactTriple::Vectors ExactTriple::towards_nodes(double cosine) const {
   return v;
 }
 
-Rgb ExactTriple::arriving(const Vec3& w) const {
+// What the film lets through, all in all.
+Rgb ExactTriple::passing(const std::vector<Passage>& passages) const {
   Rgb sum;
-  for (const auto& point : film_.passages(w))
-    sum += point.power * attenuation(-material_.optical_depth() / point.cosine);
+  for (const Passage& passage : passages) sum += film_.transmittance(passage) * passage.share;
+  return sum;
+}
+
+Rgb ExactTriple::arriving(const std::vector<Passage>& passages) const {
+  const auto pigment = [&](double cosine) { return attenuation(-material_.optical_depth() / cosine); };
+  if (passages.empty()) return {};
+  if (film_.has_single_crossing()) return passing(passages) * pigment(passages.front().cosine);
+  Rgb sum;
+  for (const Passage& passage : passages)
+    sum += film_.transmittance(passage) * pigment(passage.cosine) * passage.share;
   return sum;
 }
 
 // p_t(w -> m) as weights of the nodes: interpolates what it will be multiplied with.
-ExactTriple::Vectors ExactTriple::on_nodes(const Vec3& w) const {
+ExactTriple::Vectors ExactTriple::on_nodes(const std::vector<Passage>& passages) const {
   const CosineBasis& basis = film_.basis();
   Vectors sum;
   sum.fill(Vector(basis.size()));
-  for (const auto& point : film_.passages(w)) {
-    const auto stencil = basis.at(point.cosine);
+  for (const Passage& passage : passages) {
+    const auto stencil = basis.at(passage.cosine);
+    const Rgb power = film_.transmittance(passage) * passage.share;
     for (int c = 0; c < 3; ++c)
-      add_scaled(point.power[c], stencil.weight.data(), basis.per_panel(), sum[c].data() + stencil.first);
+      add_scaled(power[c], stencil.weight.data(), basis.per_panel(), sum[c].data() + stencil.first);
   }
   return sum;
 }
 
-Rgb ExactTriple::rest_of_product(const Vec3& wo, const Vec3& wi) const {
-  const auto out = film_.passages(wo), in = film_.passages(wi);
-  if (out.empty() || in.empty()) return {};
-  const Vectors v_out = towards_nodes(out[0].cosine), v_in = towards_nodes(in[0].cosine);
-  Rgb visits = attenuated(out[0].cosine, in[0].cosine);
-  for (int c = 0; c < 3; ++c) visits[c] += base_albedo_[c] * dot(multiply(v_in[c], visits_[c]), v_out[c]);
-  return base_albedo_ * (out[0].power * in[0].power) * visits;
+ExactTriple::Side ExactTriple::side(const std::vector<Passage>& passages) const {
+  if (material_.absorption_path == AbsorptionPath::sum) return {arriving(passages), {}, 0};
+  if (!film_.has_single_crossing()) return {{}, on_nodes(passages), 0};
+  const double cosine = passages.empty() ? 1 : passages.front().cosine;
+  return {passing(passages), towards_nodes(cosine), cosine};
 }
 
-Rgb ExactTriple::rest_through_facets(const Vec3& wo, const Vec3& wi) const {
-  const auto out = on_nodes(wo), in = on_nodes(wi);
+Rgb ExactTriple::rest(const Side& wo, const Side& wi) const {
+  if (material_.absorption_path == AbsorptionPath::sum) return gain() * (wo.power * wi.power);
+  Rgb visits;
+  for (int c = 0; c < 3; ++c) visits[c] = dot(multiply(wi.on_nodes[c], visits_[c]), wo.on_nodes[c]);
+  if (!film_.has_single_crossing())
+    return material_.radiance_scale() * transform(visits, [](double x) { return std::max(0.0, x); });
+  const Rgb first = attenuated(wo.cosine, wi.cosine);
+  return material_.radiance_scale() * base_albedo_ * (wo.power * wi.power) * (first + base_albedo_ * visits);
+}
+
+Rgb ExactTriple::rest_albedo(const std::vector<Passage>& passages) const {
+  if (material_.absorption_path == AbsorptionPath::sum) return gain_ * arriving(passages) * leaving_;
+  const Side in = side(passages);
   Rgb sum;
-  for (int c = 0; c < 3; ++c) sum[c] = std::max(0.0, dot(multiply(in[c], visits_[c]), out[c]));
-  return sum;
-}
-
-Rgb ExactTriple::rest(const Vec3& wo, const Vec3& wi) const {
-  if (material_.absorption_path == AbsorptionPath::sum) return gain() * (arriving(wo) * arriving(wi));
-  return material_.radiance_scale() *
-         (film_.has_single_crossing() ? rest_of_product(wo, wi) : rest_through_facets(wo, wi));
-}
-
-Rgb ExactTriple::rest_albedo(const Vec3& w) const {
-  if (material_.absorption_path == AbsorptionPath::sum) return gain_ * arriving(w) * leaving_;
-  Rgb sum;
-  if (film_.has_single_crossing()) {
-    for (const auto& point : film_.passages(w)) {
-      const Vectors v = towards_nodes(point.cosine);
-      for (int c = 0; c < 3; ++c) sum[c] = base_albedo_[c] * point.power[c] * dot(v[c], exit_[c]);
-    }
-    return sum;
-  }
-  const auto in = on_nodes(w);
-  for (int c = 0; c < 3; ++c) sum[c] = dot(in[c], exit_[c]);
-  return sum;
+  for (int c = 0; c < 3; ++c) sum[c] = dot(in.on_nodes[c], exit_[c]);
+  return film_.has_single_crossing() ? base_albedo_ * in.power * sum : sum;
 }
 
 ExactRest::ExactRest(const Material& material, const Wavelengths& wavelengths,
@@ -142,6 +141,8 @@ ExactRest::ExactRest(const Material& material, const Wavelengths& wavelengths,
     triples_.emplace_back(material, of(wavelengths.nm), of(wavelengths.albedo), of(wavelengths.absorption),
                           resolution);
   }
+  const auto shortest = std::min_element(wavelengths.nm.begin(), wavelengths.nm.end());
+  finest_ = static_cast<std::size_t>(shortest - wavelengths.nm.begin()) / 3;
 }
 
 template <class F>
@@ -160,23 +161,36 @@ Rgb ExactRest::fold(F of_triple) const {
   return wavelengths_.fold(each(of_triple));
 }
 
-Rgb ExactRest::rest(const Vec3& wo, const Vec3& wi) const {
-  if (wo.z <= 0 || wi.z <= 0) return {};
-  return fold([&](const ExactTriple& triple) { return triple.rest(wo, wi); });
+std::vector<Rgb> ExactRest::rest(std::span<const Vec3> wo, const Vec3& wi) const {
+  std::vector<Rgb> values(wo.size());
+  if (wi.z <= 0) return values;
+  std::vector<ExactTriple::Side> sides;
+  const auto in = passages(wi);
+  for (const ExactTriple& triple : triples_) sides.push_back(triple.side(in));
+  for (std::size_t k = 0; k < wo.size(); ++k) {
+    if (wo[k].z <= 0) continue;
+    const auto out = passages(wo[k]);
+    auto side = sides.begin();
+    values[k] = fold([&](const ExactTriple& triple) { return triple.rest(triple.side(out), *side++); });
+  }
+  return values;
 }
 
 Rgb ExactRest::albedo(const Vec3& w) const {
   if (w.z <= 0) return {};
-  return fold([&](const ExactTriple& triple) { return triple.first_albedo(w) + triple.rest_albedo(w); });
+  const auto in = passages(w);
+  return fold([&](const ExactTriple& triple) { return triple.first_albedo(w) + triple.rest_albedo(in); });
 }
 
 Rgb ExactRest::rest_albedo(const Vec3& w) const {
   if (w.z <= 0) return {};
-  return fold([&](const ExactTriple& triple) { return triple.rest_albedo(w); });
+  const auto in = passages(w);
+  return fold([&](const ExactTriple& triple) { return triple.rest_albedo(in); });
 }
 
 std::vector<double> ExactRest::arriving(const Vec3& w) const {
-  return each([&](const ExactTriple& triple) { return triple.arriving(w); });
+  const auto in = passages(w);
+  return each([&](const ExactTriple& triple) { return triple.arriving(in); });
 }
 
 std::vector<double> ExactRest::gain() const {

@@ -1,8 +1,9 @@
 // The film as integrals over its facets, by quadrature: what FilmInterface draws at random, summed up.
 //
-// An isotropic film under a base without azimuth acts on polar cosines alone. Below it a function of the
-// cosine is known by its values at the nodes of a CosineBasis, so the film is a matrix (reflection from
-// below) and vectors (passages). Powers are per wavelength, three at once.
+// Over a base without azimuth light below the film is known by its polar cosine alone: an anisotropic film
+// acts on it by the mean over the azimuth of what comes from below, which is that over all turns of its
+// facets. A function of the cosine is known by its values at the nodes of a CosineBasis, so the film is a
+// matrix (reflection from below) and vectors (passages). Powers are per wavelength, three at once.
 #pragma once
 
 #include <array>
@@ -23,10 +24,11 @@ struct ExactResolution {
   int visible = 28;    // normals visible from one direction: polar, and 3/4 of it a panel of azimuths
 };
 
-// Power arriving along w that reaches the base at `cosine`.
-struct PassagePoint {
-  double cosine;
-  Rgb power;
+// A way through the film to the base, whatever the wavelength.
+struct Passage {
+  double facet_cosine;  // outside
+  double cosine;        // below, as the light arrives at the base
+  double share;         // of the power if the film lets all through
 };
 
 class FilmIntegrals {
@@ -37,8 +39,12 @@ class FilmIntegrals {
   // False if facets bend light, so that passages() is a quadrature over many cosines.
   bool has_single_crossing() const { return !interface_.has_glossy_crossing(); }
 
-  // p_t(w -> m) dm as points of m.z; their powers sum to the share of w's power that reaches the base.
-  std::vector<PassagePoint> passages(const Vec3& w) const;
+  // Ways of light along w, for all wavelengths not shorter than those of this object; none under total
+  // reflection. p_t(w -> m) dm is share times transmittance() at m.z = cosine.
+  std::vector<Passage> passages(const Vec3& w) const;
+  Rgb transmittance(const Passage& passage) const {
+    return interface_.power(passage.facet_cosine).transmittance;
+  }
 
   // Directional albedo of the first surface, a smooth film's Dirac included.
   Rgb first_albedo(const Vec3& w) const;
@@ -56,6 +62,10 @@ class FilmIntegrals {
     double cosine, partner;
     Rgb weight;
   };
+  // One azimuth of a facet's normal: of twice the angle, and D(h) over their number.
+  struct Turn {
+    double cos_twice, sin_twice, density;
+  };
   enum class Event { reflection_below, passage };
 
   const ThinFilm& film_of(Event event) const { return event == Event::passage ? film_ : film_below_; }
@@ -69,8 +79,11 @@ class FilmIntegrals {
   template <class F>
   void visit_facets(Event event, F visit) const;
   template <class F>
-  void visit_azimuths(Event event, double cos_h, double cosine, const Rgb& weight, F visit) const;
-  double shadowing(Event event, double cosine, double partner) const;
+  void visit_azimuths(Event event, double theta, const std::vector<Turn>& turns, double cosine,
+                      const Rgb& weight, F visit) const;
+  std::vector<Turn> turns_at(double theta) const;
+  double shadowed(Event event, const std::vector<Turn>& turns, const Vec3& w, const Vec3& partner) const;
+  double wider() const { return std::max(material_.roughness.u, material_.roughness.v); }
 
   Material material_;
   ExactResolution resolution_;
@@ -82,6 +95,7 @@ class FilmIntegrals {
   CosineBasis basis_;
   GaussInterpolation cosine_panel_;
   GaussRule fine_, normals_, azimuths_, visible_, visible_azimuths_;
+  std::vector<double> turns_;  // azimuths of normals, even over half a turn; one if the film is isotropic
 };
 
 }  // namespace sunbeam

@@ -5,6 +5,7 @@
 
 #include "bake/live/microsurface.h"
 #include "bake/optics/quadrature.h"
+#include "bake/optics/vector_clones.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/text.h"
 
@@ -65,7 +66,53 @@ void add_panel(double low, double high, int count, Vector& cosine, Vector& root)
   }
 }
 
+walk::FilmPhases phases_at(std::span<const double> orders) {
+  walk::FilmPhases phases;
+  for (const double order : orders) phases.k[phases.count++] = kPi * order;
+  return phases;
+}
+
+// One facet's part in the moments of every mode: sums by (mode, node, order), `power` by order.
+SUNBEAM_VECTOR_CLONES
+void add_facet(const double* even, const double* odd, int nodes, double azimuth, int modes,
+               const double* power, int count, double* sums, std::size_t mode_stride) {
+  double before = azimuth, moment = 1;  // cos((k - 1) phi), cos(k phi)
+  for (int mode = 0; mode < modes; ++mode, sums += mode_stride) {
+    const double* weight = mode % 2 == 0 ? even : odd;
+    for (int i = 0; i < nodes; ++i) add_scaled(moment * weight[i], power, count, sums + i * count);
+    const double next = 2 * azimuth * moment - before;
+    before = moment;
+    moment = next;
+  }
+}
+
+// One mode of a film over a pigment: D for each column of `enters`, and sees . R D.
+struct ModeResponse {
+  Matrix down, slab;
+};
+SUNBEAM_VECTOR_CLONES SUNBEAM_FLATTEN ModeResponse respond(const Matrix& back, const Matrix& r, Matrix enters,
+                                                           const Matrix& sees) {
+  ModeResponse response{solve(one_minus(multiply(back, r)), std::move(enters)), {}};
+  response.slab = multiply(multiply(sees, r), response.down);
+  return response;
+}
+
+// Two of a layer of reflection r and transmission t.
+SUNBEAM_VECTOR_CLONES SUNBEAM_FLATTEN void double_layer(Matrix& r, Matrix& t) {
+  const Matrix x = solve(one_minus(multiply(r, r)), t), tx = multiply(t, multiply(r, x));
+  t = multiply(t, x);
+  for (int i = 0; i < r.size(); ++i) add_scaled(1, tx.row(i), r.size(), r.row(i));
+  symmetrise(r);
+  symmetrise(t);
+}
+
 }  // namespace
+
+std::vector<double> fringe_orders(double film_ior, double thickness_nm, const Wavelengths& wavelengths) {
+  std::vector<double> orders;
+  for (const double nm : wavelengths.nm) orders.push_back(2 * film_ior * thickness_nm / nm);
+  return orders;
+}
 
 bool SlabSolver::solves(const Material& material) {
   return material.scatters() && material.roughness.is_isotropic() && !material.has_multiple_facets() &&
@@ -79,6 +126,7 @@ SlabSolver::Nodes SlabSolver::make_nodes(const Material& material, const Resolut
   if (critical > 0) add_panel(0, critical, resolution.below, nodes.cosine, nodes.root);
   const int rest = critical > 0 ? resolution.above : resolution.below + resolution.above;
   add_panel(critical, 1, rest, nodes.cosine, nodes.root);
+  for (const double m : nodes.cosine) nodes.sine.push_back(sine_of(m));
   return nodes;
 }
 
@@ -100,11 +148,76 @@ SlabSolver::Nodes::Stencil SlabSolver::Nodes::at(double m) const {
 
 SlabSolver::SlabSolver(const Material& material, std::vector<double> cosines, Resolution resolution)
     : material_(material),
+      interface_(material, Wavelengths::rgb3(material)),
       cosines_(std::move(cosines)),
       resolution_(resolution),
       nodes_(make_nodes(material, resolution)),
-      modes_(terms_until(resolution.least, material.anisotropy)),
-      terms_(terms_until(square(resolution.least), material.anisotropy)) {}
+      terms_(terms_until(square(resolution.least), material.anisotropy)),
+      modes_(terms_until(resolution.least, material.anisotropy)) {
+  for (const double c : cosines_) entry_.push_back(facets_of_entry(direction_from_cosine(c, 0)));
+  for (int j = 0; j < nodes_.size(); ++j) thrown_back_.push_back(facets_thrown_back(j));
+  modes_ = modes_above(resolution.faintest);
+}
+
+// Odd modes of whatever light meets hold the sine of m as a factor, which no polynomial in the cosine has.
+SlabSolver::Facet SlabSolver::facet(double cosine, double share, const Vec3& on) const {
+  const Nodes::Stencil at = nodes_.at(on.z);
+  const double sine = std::hypot(on.x, on.y);
+  Facet facet{std::min(cosine, 1.0), share, sine > 0 ? on.x / sine : 1, at.first, {}, {}};
+  for (int i = 0; i < Nodes::kStencil; ++i) {
+    const int to = at.first + i;
+    facet.even[i] = at.weight[i] / nodes_.root[to];
+    facet.odd[i] = facet.even[i] * sine / nodes_.sine[to];
+  }
+  return facet;
+}
+
+SlabSolver::Facets SlabSolver::facets_of_entry(const Vec3& w) const {
+  const Ggx ggx(material_.roughness);
+  Facets facets;
+  each_facet(ggx, interface_.is_smooth(), w.z, resolution_, [&](const Vec3& h, double share) {
+    Vec3 m = w;
+    if (interface_.bends && (!walk::refract(w, h, interface_.index_ratio, m) || m.z <= 0)) return;
+    const bool is_shadowed = !interface_.straight && !interface_.is_smooth();
+    facets.push_back(facet(dot(w, h), share * (is_shadowed ? ggx.g2_over_g1(w, m) : 1), m));
+  });
+  return facets;
+}
+
+SlabSolver::Facets SlabSolver::facets_thrown_back(int from) const {
+  const Ggx ggx(material_.roughness);
+  const Vec3 u = direction_from_cosine(nodes_.cosine[from], 0);
+  Facets facets;
+  each_facet(ggx, interface_.is_smooth(), u.z, resolution_, [&](const Vec3& h, double share) {
+    const Vec3 m = reflect(u, h);
+    if (m.z <= 0) return;
+    const double kept = share * (interface_.is_smooth() ? 1 : ggx.g2_over_g1(u, m));
+    facets.push_back(facet(dot(u, h), nodes_.root[from] * kept, m));
+  });
+  return facets;
+}
+
+// Light scattered once leaves a pigment without a base as p(m, m') / (m + m').
+int SlabSolver::modes_above(double faintest) const {
+  if (faintest <= 0) return modes_;
+  const std::array<double, 1> bare{0};
+  const Fringes film(*this, bare);
+  Matrix mean;
+  for (int mode = 0; mode < modes_; ++mode) {
+    Matrix once = phase(mode).backward;
+    for (int i = 0; i < once.size(); ++i)
+      for (int j = 0; j < once.size(); ++j)
+        once.row(i)[j] *= nodes_.root[i] * nodes_.root[j] / (nodes_.cosine[i] + nodes_.cosine[j]);
+    const Matrix &sees = film.modes_[0][mode].entry, left = multiply(multiply(sees, once), transposed(sees));
+    if (mode == 0) mean = left;
+    bool is_faint = true;
+    for (int a = 0; a < left.size(); ++a)
+      for (int b = 0; b < left.size(); ++b)
+        is_faint = is_faint && std::abs(left.row(a)[b]) < faintest * mean.row(a)[b];
+    if (is_faint) return mode;
+  }
+  return modes_;
+}
 
 void SlabSolver::add_depth(double depth) {
   {
@@ -127,126 +240,109 @@ SlabSolver::Layer SlabSolver::make_layer(double depth) const {
   return layer;
 }
 
-void SlabSolver::double_up(int mode, double depth, Matrix& r, Matrix& t) const {
+SlabSolver::Phase SlabSolver::phase(int mode) const {
   const int n = nodes_.size();
-  const double scattering = material_.scattering_depth(), g = material_.anisotropy;
-  const double whole = scattering + depth;
-  const int doublings = std::max(0, static_cast<int>(std::ceil(std::log2(whole / kThinLayer))));
-  const double thin = std::ldexp(whole, -doublings), albedo = scattering / whole;
-
+  const double g = material_.anisotropy;
   std::vector<Vector> p;
   for (const double m : nodes_.cosine) p.push_back(legendre(mode, terms_, m));
-  r = Matrix(n), t = Matrix(n);
+  Phase phase{Matrix(n), Matrix(n)};
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
-      double forward = 0, backward = 0, power = std::pow(g, mode);
+      double power = std::pow(g, mode);
       for (std::size_t l = 0; l < p[i].size(); ++l, power *= g) {
         const int order = mode + static_cast<int>(l);
         const double term = (2 * order + 1) * kInvPi / 4 * power * p[i][l] * p[j][l];
-        forward += term;
-        backward += order % 2 == 0 ? term : -term;
+        phase.forward.row(i)[j] += term;
+        phase.backward.row(i)[j] += order % 2 == 0 ? term : -term;
       }
+    }
+  return phase;
+}
+
+void SlabSolver::double_up(int mode, double depth, Matrix& r, Matrix& t) const {
+  const int n = nodes_.size();
+  const double scattering = material_.scattering_depth(), whole = scattering + depth;
+  const int doublings = std::max(0, static_cast<int>(std::ceil(std::log2(whole / kThinLayer))));
+  const double thin = std::ldexp(whole, -doublings), albedo = scattering / whole;
+
+  const Phase p = phase(mode);
+  r = Matrix(n), t = Matrix(n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
       // One event: Int exp(-z/m) exp(-(z or thin - z)/m') dz / (m m').
       const double in = nodes_.cosine[i], out = nodes_.cosine[j];
       const double common = albedo * thin / (in * out) * nodes_.root[i] * nodes_.root[j];
-      r.row(i)[j] = common * backward * mean_decay(thin * (1 / in + 1 / out));
+      r.row(i)[j] = common * p.backward.row(i)[j] * mean_decay(thin * (1 / in + 1 / out));
       const double steep = std::max(in, out), flat = std::min(in, out);
-      t.row(i)[j] = common * forward * std::exp(-thin / steep) * mean_decay(thin * (1 / flat - 1 / steep));
+      t.row(i)[j] =
+          common * p.forward.row(i)[j] * std::exp(-thin / steep) * mean_decay(thin * (1 / flat - 1 / steep));
     }
   for (int i = 0; i < n; ++i) t.row(i)[i] += std::exp(-thin / nodes_.cosine[i]);
-
-  for (int k = 0; k < doublings; ++k) {
-    const Matrix x = solve(one_minus(multiply(r, r)), t), tx = multiply(t, multiply(r, x));
-    t = multiply(t, x);
-    for (int i = 0; i < n; ++i) add_scaled(1, tx.row(i), n, r.row(i));
-    symmetrise(r);
-    symmetrise(t);
-  }
+  for (int k = 0; k < doublings; ++k) double_layer(r, t);
 }
 
-SlabSolver::Film::Film(const SlabSolver& solver, double film_thickness_nm, const Wavelengths& wavelengths)
-    : solver_(solver), wavelengths_(wavelengths), count_(static_cast<int>(wavelengths.size())) {
-  Material material = solver.material_;
-  material.film_thickness_nm = film_thickness_nm;
-  const walk::Layers layers(material, wavelengths);
+std::vector<double> SlabSolver::transmittances(std::span<const double> orders, std::size_t cosine) const {
+  const walk::FilmPhases phases = phases_at(orders);
+  std::array<double, kMostWavelengths> reflectance;
+  std::vector<double> sums(orders.size());
+  for (const Facet& facet : entry_[cosine]) {
+    walk::best_kernels().reflectances(interface_.film, phases, facet.cosine, reflectance.data());
+    for (std::size_t j = 0; j < sums.size(); ++j) sums[j] += facet.share * (1 - reflectance[j]);
+  }
+  return sums;
+}
+
+// By (mode, row, node, order).
+std::vector<double> SlabSolver::moments(const std::vector<Facets>& rows, const walk::FilmSide& film,
+                                        bool lets_through, std::span<const double> orders) const {
+  const walk::FilmPhases phases = phases_at(orders);
   const walk::Kernels& kernels = walk::best_kernels();
-  const Nodes& nodes = solver.nodes_;
-  const int n = nodes.size(), modes = solver.modes_, cosines = static_cast<int>(solver.cosines_.size());
-  const Ggx ggx(material.roughness);
+  const std::size_t row_size = nodes_.cosine.size() * orders.size(), mode_size = rows.size() * row_size;
+  std::vector<double> moments(modes_ * mode_size);
   std::array<double, kMostWavelengths> power;
-
-  // Adds `power` of light that goes on along m to the moments of row `from` out of `rows`. Odd modes of
-  // whatever it meets hold the sine of m as a factor, which no polynomial in the cosine has.
-  const auto add = [&](const Vec3& m, int from, int rows, std::vector<double>& moments) {
-    const Nodes::Stencil at = nodes.at(m.z);
-    const double sine = std::hypot(m.x, m.y), turn = sine > 0 ? m.x / sine : 1;
-    double before = turn, moment = 1;  // cos((k - 1) phi), cos(k phi)
-    for (int mode = 0; mode < modes; ++mode) {
-      for (int i = 0; i < Nodes::kStencil; ++i) {
-        const int to = at.first + i;
-        const double sines = mode % 2 == 1 ? sine / sine_of(nodes.cosine[to]) : 1;
-        double* sum = &moments[static_cast<std::size_t>((mode * rows + from) * n + to) * count_];
-        add_scaled(moment * sines * at.weight[i] / nodes.root[to], power.data(), count_, sum);
-      }
-      const double next = 2 * turn * moment - before;
-      before = moment;
-      moment = next;
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    for (const Facet& facet : rows[row]) {
+      kernels.reflectances(film, phases, facet.cosine, power.data());
+      for (int j = 0; j < phases.count; ++j)
+        power[j] = facet.share * (lets_through ? 1 - power[j] : power[j]);
+      add_facet(facet.even.data(), facet.odd.data(), Nodes::kStencil, facet.azimuth, modes_, power.data(),
+                phases.count, &moments[row * row_size + facet.first_node * orders.size()], mode_size);
     }
-  };
+  return moments;
+}
 
-  entry_.resize(static_cast<std::size_t>(modes * cosines * n) * count_);
-  for (int c = 0; c < cosines; ++c) {
-    const Vec3 w = direction_from_cosine(solver.cosines_[c], 0);
-    each_facet(ggx, layers.is_smooth(), w.z, solver.resolution_, [&](const Vec3& h, double share) {
-      Vec3 m = w;
-      if (layers.bends && (!walk::refract(w, h, layers.index_ratio, m) || m.z <= 0)) return;
-      const double passes = layers.straight || layers.is_smooth() ? 1 : ggx.g2_over_g1(w, m);
-      kernels.reflectances(layers.film, layers.phases, std::min(dot(w, h), 1.0), power.data());
-      for (int j = 0; j < count_; ++j) power[j] = (1 - power[j]) * share * passes;
-      add(m, c, cosines, entry_);
-    });
-  }
-  thrown_back_.resize(static_cast<std::size_t>(modes * n * n) * count_);
-  for (int from = 0; from < n; ++from) {
-    const Vec3 u = direction_from_cosine(nodes.cosine[from], 0);
-    each_facet(ggx, layers.is_smooth(), u.z, solver.resolution_, [&](const Vec3& h, double share) {
-      const Vec3 m = reflect(u, h);
-      if (m.z <= 0) return;
-      const double kept = nodes.root[from] * share * (layers.is_smooth() ? 1 : ggx.g2_over_g1(u, m));
-      kernels.reflectances(layers.film_below, layers.phases, std::min(dot(u, h), 1.0), power.data());
-      for (int j = 0; j < count_; ++j) power[j] *= kept;
-      add(m, from, n, thrown_back_);
-    });
+SlabSolver::Fringes::Fringes(const SlabSolver& solver, std::span<const double> orders) : solver_(solver) {
+  const std::vector<double> entry = solver.moments(solver.entry_, solver.interface_.film, true, orders);
+  const std::vector<double> back =
+      solver.moments(solver.thrown_back_, solver.interface_.film_below, false, orders);
+  const int n = solver.nodes_.size(), cosines = static_cast<int>(solver.cosines_.size());
+  modes_.resize(orders.size(), std::vector<Mode>(solver.modes_, {Matrix(cosines, n), Matrix(n)}));
+  const double *e = entry.data(), *f = back.data();
+  for (int mode = 0; mode < solver.modes_; ++mode) {
+    for (int c = 0; c < cosines; ++c)
+      for (int to = 0; to < n; ++to)
+        for (auto& modes : modes_) modes[mode].entry.row(c)[to] = *e++;
+    for (int from = 0; from < n; ++from)
+      for (int to = 0; to < n; ++to)
+        for (auto& modes : modes_) modes[mode].thrown_back.row(to)[from] = *f++;
   }
 }
 
-SlabSolver::Film::Modes SlabSolver::Film::rest(double optical_depth) const {
-  Modes modes;
-  modes.cosines_ = solver_.cosines_.size();
-  modes.mode_.assign(solver_.modes_, std::vector<Rgb>(modes.cosines_ * modes.cosines_));
-  for (int j = 0; j < count_; ++j) add_wavelength(j, optical_depth * wavelengths_.absorption[j], modes);
-  return modes;
-}
-
-void SlabSolver::Film::add_wavelength(std::size_t wavelength, double depth, Modes& modes) const {
+SlabSolver::Response SlabSolver::Fringes::response(std::size_t order, double depth) const {
   const auto found = solver_.layers_.find(depth);
   if (found == solver_.layers_.end())
     throw Error("slab solver: found an optical depth of " + to_text(depth) + " that was not added");
   const Layer& layer = found->second;
-  const int n = solver_.nodes_.size(), cosines = static_cast<int>(modes.cosines_);
-  const double scale = solver_.material_.radiance_scale(), kd = wavelengths_.albedo[wavelength];
+  const int n = solver_.nodes_.size(), cosines = static_cast<int>(solver_.cosines_.size());
+  const double scale = solver_.material_.radiance_scale();
+  Response response;
   for (int mode = 0; mode < solver_.modes_; ++mode) {
     // F, and E with what the base sends up, if anything does, as one more column.
     const bool has_base = mode == 0;
-    Matrix back(n), enters(n, cosines + has_base), sees(cosines, n);
-    for (int from = 0; from < n; ++from)
-      for (int to = 0; to < n; ++to)
-        back.row(to)[from] =
-            thrown_back_[static_cast<std::size_t>((mode * n + from) * n + to) * count_ + wavelength];
+    const auto& [sees, back] = modes_[order][mode];
+    Matrix enters(n, cosines + has_base);
     for (int c = 0; c < cosines; ++c)
-      for (int to = 0; to < n; ++to)
-        sees.row(c)[to] = enters.row(to)[c] =
-            entry_[static_cast<std::size_t>((mode * cosines + c) * n + to) * count_ + wavelength];
+      for (int to = 0; to < n; ++to) enters.row(to)[c] = sees.row(c)[to];
     Vector up;
     if (has_base) {
       up = multiply(solver_.nodes_.root, layer.transmission);  // times pi
@@ -254,24 +350,43 @@ void SlabSolver::Film::add_wavelength(std::size_t wavelength, double depth, Mode
         for (int j = 0; j < n; ++j) enters.row(i)[cosines] += back.row(i)[j] * up[j];
     }
     const Matrix& r = layer.reflection[mode];
-    const Matrix down = solve(one_minus(multiply(back, r)), std::move(enters));
-    const Matrix value = multiply(multiply(sees, r), down);
-    Vector arrived;
-    double visits = 0;
+    ModeResponse found_mode = respond(back, r, std::move(enters), sees);
     if (has_base) {
-      arrived = multiply(up, down);
-      const double returned =
-          kInvPi * (dot(multiply(solver_.nodes_.root, r), solver_.nodes_.root) + arrived[cosines]);
-      visits = kd * kInvPi / (1 - kd * returned);
+      response.arrived = multiply(up, found_mode.down);
+      response.returned =
+          kInvPi * (dot(multiply(solver_.nodes_.root, r), solver_.nodes_.root) + response.arrived[cosines]);
+      response.arrived.resize(cosines);
+      for (double& power : response.arrived) power *= std::sqrt(scale * kInvPi);
     }
-    const double factor = scale * (mode == 0 ? 1 : 2);
+    Matrix slab(cosines);
     for (int a = 0; a < cosines; ++a)
-      for (int b = 0; b < cosines; ++b) {
-        const double base = has_base ? visits * arrived[a] * arrived[b] : 0;
-        modes.mode_[mode][a * cosines + b] +=
-            factor * (value.row(a)[b] + base) * wavelengths_.weight[wavelength];
-      }
+      for (int b = 0; b < cosines; ++b)
+        slab.row(a)[b] = scale * (mode == 0 ? 1 : 2) * found_mode.slab.row(a)[b];
+    response.slab.push_back(std::move(slab));
   }
+  return response;
+}
+
+SlabSolver::Film::Film(const SlabSolver& solver, double film_thickness_nm, const Wavelengths& wavelengths)
+    : wavelengths_(wavelengths),
+      fringes_(solver, fringe_orders(solver.material_.film_ior, film_thickness_nm, wavelengths)) {}
+
+SlabSolver::Film::Modes SlabSolver::Film::rest(double optical_depth) const {
+  Modes modes;
+  for (std::size_t j = 0; j < wavelengths_.size(); ++j) {
+    const Response response = fringes_.response(j, optical_depth * wavelengths_.absorption[j]);
+    const std::size_t cosines = response.arrived.size();
+    modes.cosines_ = cosines;
+    modes.mode_.resize(response.slab.size(), std::vector<Rgb>(cosines * cosines));
+    for (std::size_t mode = 0; mode < modes.mode_.size(); ++mode)
+      for (std::size_t a = 0; a < cosines; ++a)
+        for (std::size_t b = 0; b < cosines; ++b) {
+          const double base = mode == 0 ? response.base(a, b, wavelengths_.albedo[j]) : 0;
+          modes.mode_[mode][a * cosines + b] +=
+              (response.slab[mode].row(static_cast<int>(a))[b] + base) * wavelengths_.weight[j];
+        }
+  }
+  return modes;
 }
 
 Rgb SlabSolver::Film::Modes::at(std::size_t a, std::size_t b, double azimuth) const {

@@ -30,6 +30,9 @@
 
 namespace sunbeam {
 
+// 2 n1 d / lambda of each wavelength.
+std::vector<double> fringe_orders(double film_ior, double thickness_nm, const Wavelengths& wavelengths);
+
 class SlabSolver {
  public:
   // How finely it works.
@@ -37,6 +40,9 @@ class SlabSolver {
     int below = 12, above = 20;  // cosines up to the critical one of the film seen from below, and from there
     int across = 24, around = 24;  // facets of one direction: over the cap, and over half a turn
     double least = 3e-5;           // share of the phase function that may be left out
+    // Modes of the azimuth in which light scattered once is weaker than this share of its mean, between any
+    // two of the cosines, are left out too.
+    double faintest = 0;
   };
 
   // Largest |mean cosine| of a scattering event.
@@ -53,6 +59,39 @@ class SlabSolver {
   // Prepares the pigment at an optical depth of absorption. May be called by many threads, but not beside
   // rest().
   void add_depth(double depth);
+
+  // What a film at one fringe order over a pigment of one depth sends back, 1/sr.
+  struct Response {
+    std::vector<Matrix>
+        slab;        // per mode: light that never reaches the base, between the cosines of wo and wi
+    Vector arrived;  // at the base, from each cosine; times the root of s / pi
+    double returned = 0;
+
+    // Over a base of this albedo: light that reaches it, whatever the azimuth.
+    double base(std::size_t a, std::size_t b, double albedo) const {
+      return albedo / (1 - albedo * returned) * arrived[a] * arrived[b];
+    }
+  };
+
+  // The film at some fringe orders 2 n1 d / lambda, at most kMostWavelengths.
+  class Fringes {
+   public:
+    Fringes(const SlabSolver& solver, std::span<const double> orders);
+
+    // Of the order of this number. The same bits whatever other orders there are. Throws Error if the depth
+    // has not been added.
+    Response response(std::size_t order, double depth) const;
+
+   private:
+    friend class SlabSolver;
+    struct Mode {
+      Matrix entry;        // E, by (cosine, to)
+      Matrix thrown_back;  // F, by (to, from)
+    };
+
+    const SlabSolver& solver_;
+    std::vector<std::vector<Mode>> modes_;  // by (order, mode)
+  };
 
   // The film at one thickness and all wavelengths, for many depths.
   class Film {
@@ -73,19 +112,20 @@ class SlabSolver {
     Modes rest(double optical_depth) const;
 
    private:
-    void add_wavelength(std::size_t wavelength, double depth, Modes& modes) const;
-
-    const SlabSolver& solver_;
     Wavelengths wavelengths_;
-    int count_;                        // of wavelengths
-    std::vector<double> thrown_back_;  // F by (mode, from, to, wavelength)
-    std::vector<double> entry_;        // E by (mode, cosine, to, wavelength)
+    Fringes fringes_;
   };
+
+  // Share of light along the cosine of this number that films of these fringe orders, at most
+  // kMostWavelengths, let in.
+  std::vector<double> transmittances(std::span<const double> orders, std::size_t cosine) const;
+
+  int modes() const { return modes_; }
 
  private:
   // Nodes and weights of the cosine below the film, and what values between them are made of.
   struct Nodes {
-    std::vector<double> cosine, root;  // root of M
+    std::vector<double> cosine, sine, root;  // root of M
     static constexpr int kStencil = 6;
     struct Stencil {
       int first;
@@ -94,22 +134,47 @@ class SlabSolver {
     int size() const { return static_cast<int>(cosine.size()); }
     Stencil at(double m) const;
   };
+  // A facet that light of one direction meets, and where the light goes on below the film.
+  struct Facet {
+    double cosine;   // at which the light meets it
+    double share;    // of the light, shadowing included
+    double azimuth;  // cosine of the azimuth of where it goes on
+    int first_node;  // around the cosine of where it goes on
+    std::array<double, Nodes::kStencil> even,
+        odd;  // its part in moments at these nodes, of even and odd modes
+  };
+  using Facets = std::vector<Facet>;
+
   // R and T between nodes, times the roots of M on both sides.
   struct Layer {
     std::vector<Matrix> reflection;  // per mode
     Matrix transmission;             // mode 0
   };
+  // The phase function's mode between nodes, 1/sr: scattered on, and back.
+  struct Phase {
+    Matrix forward, backward;
+  };
 
   static Nodes make_nodes(const Material& material, const Resolution& resolution);
+  Facets facets_of_entry(const Vec3& w) const;
+  Facets facets_thrown_back(int from) const;
+  Facet facet(double cosine, double share, const Vec3& on) const;
+  int modes_above(double faintest) const;
+  std::vector<double> moments(const std::vector<Facets>& rows, const walk::FilmSide& film, bool lets_through,
+                              std::span<const double> orders) const;
+  Phase phase(int mode) const;
   Layer make_layer(double depth) const;
   void double_up(int mode, double depth, Matrix& r, Matrix& t) const;
 
   Material material_;
+  walk::Layers interface_;  // for the film's interface alone
   std::vector<double> cosines_;
   Resolution resolution_;
   Nodes nodes_;
-  int modes_, terms_;  // of the azimuth; of the phase function's Legendre series
-  std::mutex mutex_;   // of
+  int terms_;                                // of the phase function's Legendre series
+  int modes_;                                // of the azimuth
+  std::vector<Facets> entry_, thrown_back_;  // by cosine; by node
+  std::mutex mutex_;                         // of
   std::map<double, Layer> layers_;
 };
 

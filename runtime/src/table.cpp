@@ -112,6 +112,7 @@ RestFrame::Terms RestFrame::rgb3_terms(double m_i, double m_o) const {
 
 RestFrame::Terms RestFrame::folded_terms(double m_i, double m_o) const {
   const Rgb one_visit = first_visit(-material_.absorption_exponent(m_i, m_o));
+  if (!decays_) return {{}, kInvPi * one_visit, Rgb(1)};
   const Rgb at_sum = material_.absorption_path == AbsorptionPath::sum
                          ? one_visit
                          : first_visit(material_.optical_depth() * (1 / m_i + 1 / m_o));

@@ -18,9 +18,7 @@ Camera::Camera(const CameraView& view, int width, int height)
   lens_y_ = view.lens_radius * down;
 }
 
-Ray Camera::ray(double x, double y, Rng& rng) const {
-  const Vec3 in_focus = top_left_ + x * pixel_x_ + y * pixel_y_;
-  if (!has_lens_) return {position_, normalize(in_focus)};
+Ray Camera::through_lens(const Vec3& in_focus, Rng& rng) const {
   const double radius = std::sqrt(rng.uniform());
   const Turn turn(rng.uniform());
   const Vec3 on_lens = (radius * turn.cosine) * lens_x_ + (radius * turn.sine) * lens_y_;

@@ -14,9 +14,14 @@ class Camera {
   // Through the point (x, y) of the picture, in pixels from its top left corner; pixel (i, j) covers
   // [i, i + 1) x [j, j + 1). A lens takes a point on it, uniformly, from `rng`; a pinhole leaves it
   // untouched.
-  Ray ray(double x, double y, Rng& rng) const;
+  Ray ray(double x, double y, Rng& rng) const {
+    const Vec3 in_focus = top_left_ + x * pixel_x_ + y * pixel_y_;
+    return has_lens_ ? through_lens(in_focus, rng) : Ray{position_, normalize(in_focus)};
+  }
 
  private:
+  Ray through_lens(const Vec3& in_focus, Rng& rng) const;
+
   Vec3 position_;
   // The picture at the distance in focus: its corner and one pixel to the right and down.
   Vec3 top_left_, pixel_x_, pixel_y_;

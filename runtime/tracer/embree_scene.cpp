@@ -30,10 +30,12 @@ using Device = std::unique_ptr<RTCDeviceTy, DeviceRelease>;
 using SceneHandle = std::unique_ptr<RTCSceneTy, SceneRelease>;
 using Geometry = std::unique_ptr<RTCGeometryTy, GeometryRelease>;
 
-// What every hit of a mesh reads, close together. Embree reads the positions.
-struct MeshVertex {
-  std::array<float, 3> position;
-  std::array<float, 3> normal;  // 0 on a flat mesh
+using Float3 = std::array<float, 3>;
+
+// What every hit of a triangle reads, in one line of the cache: anywhere else it would wait twice for memory.
+struct alignas(64) Triangle {
+  Float3 corner, normal;          // the geometric one, unit
+  std::array<Float3, 3> normals;  // of the vertices; of a flat mesh the geometric one
 };
 
 // Exactly one of `sphere` and `mesh` is set. Its place in the list is its geometry id.
@@ -42,22 +44,38 @@ struct Surface {
   const Mesh* mesh = nullptr;
   int object = -1, light = -1;
   double offset = 0;
-  std::vector<MeshVertex> vertices = {};
+  std::vector<Float3> positions = {};  // of the vertices, which Embree reads
+  std::vector<Triangle> triangles = {};
   std::vector<Vec3> tangents = {};  // of the triangles of a flat mesh, of the vertices of a smooth one
   bool has_coordinates = false;
   std::vector<UvDerivatives> derivatives = {};  // of the vertices of a mesh with coordinates
 };
 
-std::array<float, 3> to_float(const Vec3& v) {
+Float3 to_float(const Vec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
-Vec3 to_double(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
+Vec3 to_double(const Float3& v) { return {v[0], v[1], v[2]}; }
 
-std::vector<MeshVertex> vertices_of(const Mesh& mesh) {
-  std::vector<MeshVertex> vertices(mesh.positions.size());
-  for (std::size_t i = 0; i < vertices.size(); ++i)
-    vertices[i] = {to_float(mesh.positions[i]), to_float(mesh.normals.empty() ? Vec3{} : mesh.normals[i])};
-  return vertices;
+std::vector<Float3> positions_of(const Mesh& mesh) {
+  std::vector<Float3> positions;
+  positions.reserve(mesh.positions.size() + 1);
+  for (const Vec3& position : mesh.positions) positions.push_back(to_float(position));
+  positions.emplace_back();  // Embree may read 16 bytes at the last
+  return positions;
+}
+
+std::vector<Triangle> triangles_of(const Mesh& mesh, const std::vector<Float3>& positions) {
+  std::vector<Triangle> triangles(mesh.triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const auto [i, j, k] = mesh.triangles[t];
+    const Vec3 a = to_double(positions[i]), b = to_double(positions[j]), c = to_double(positions[k]);
+    const Float3 normal = to_float(normalize(cross(b - a, c - a)));
+    triangles[t] = {positions[i], normal, {normal, normal, normal}};
+    if (!mesh.normals.empty())
+      triangles[t].normals = {to_float(mesh.normals[i]), to_float(mesh.normals[j]),
+                              to_float(mesh.normals[k])};
+  }
+  return triangles;
 }
 
 double largest_coordinate(const Vec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
@@ -150,75 +168,87 @@ Geometry make_mesh(RTCDevice device, const Surface& surface) {
   Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
   const auto& triangles = surface.mesh->triangles;
   rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                             surface.vertices.data(), 0, sizeof(MeshVertex), surface.vertices.size());
+                             surface.positions.data(), 0, sizeof(Float3), surface.mesh->positions.size());
   rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
                              sizeof(triangles[0]), triangles.size());
   return geometry;
 }
 
-// --- hits ---
+// --- hits: `point` is where Embree's distance, in single precision, leads along the ray ---
 
-struct Point {
-  Vec3 position, geometric_normal, shading_normal, tangent;
-  Point2 uv = {};
-  UvDerivatives derivatives = {};
+// Made of its members in place: SurfaceHit is too large to be copied.
+using MaybeHit = std::optional<SurfaceHit>;
+
+MaybeHit meet_sphere(const Surface& surface, const Ray& ray, const Vec3& point) {
+  const Sphere& sphere = *surface.sphere;
+  const Vec3 n = normalize(point - sphere.center), position = sphere.center + sphere.radius * n,
+             tangent = unit_or_zero({-n.y, n.x, 0});
+  Point2 uv;  // longitude and latitude, from 0 to 1 each
+  UvDerivatives derivatives;
+  if (surface.has_coordinates) {
+    const double from_axis = std::hypot(n.x, n.y), longitude = std::atan2(n.y, n.x);
+    uv = {longitude / (2 * kPi) + (longitude < 0 ? 1 : 0), std::atan2(n.z, from_axis) / kPi + 0.5};
+    derivatives = {2 * kPi * sphere.radius * from_axis * tangent, kPi * sphere.radius * cross(n, tangent)};
+  }
+  return MaybeHit(std::in_place, position, n, n, tangent, uv, derivatives,
+                  dot(position - ray.origin, ray.direction), surface.offset, surface.object, surface.light);
+}
+
+// A weighted mean of what the three vertices have.
+struct Barycentric {
+  explicit Barycentric(const RTCHit& hit) : u(hit.u), v(hit.v) {}
+  template <class T>
+  T operator()(const T& a, const T& b, const T& c) const {
+    return (1 - u - v) * a + u * b + v * c;
+  }
+  double u, v;
 };
 
-// Embree's distance is in single precision: the point is put back onto the sphere.
-Point sphere_point(const Sphere& sphere, const Vec3& near_surface) {
-  const Vec3 normal = normalize(near_surface - sphere.center);
-  return {sphere.center + sphere.radius * normal, normal, normal, unit_or_zero({-normal.y, normal.x, 0})};
+Vec3 tangent_at(const Surface& surface, unsigned triangle, const Barycentric& mix) {
+  if (surface.mesh->normals.empty()) return surface.tangents[triangle];
+  const auto [i, j, k] = surface.mesh->triangles[triangle];
+  return unit_or_zero(mix(surface.tangents[i], surface.tangents[j], surface.tangents[k]));
 }
 
-// u and v, longitude and latitude, from 0 to 1 each.
-void add_coordinates(Point& point, double radius) {
-  const Vec3& n = point.geometric_normal;
-  const double from_axis = std::hypot(n.x, n.y), longitude = std::atan2(n.y, n.x);
-  point.uv = {longitude / (2 * kPi) + (longitude < 0 ? 1 : 0), std::atan2(n.z, from_axis) / kPi + 0.5};
-  point.derivatives = {2 * kPi * radius * from_axis * point.tangent, kPi * radius * cross(n, point.tangent)};
-}
+MaybeHit meet_triangle(const Surface& surface, const RTCHit& found, const Ray& ray, const Vec3& point) {
+  const Barycentric mix(found);
+  const Triangle& triangle = surface.triangles[found.primID];
+  const Vec3 stored = to_double(triangle.normal);
+  const Vec3 normal = (1.5 - 0.5 * dot(stored, stored)) * stored;  // a unit vector in double precision too
+  const Vec3 position = point - dot(point - to_double(triangle.corner), normal) * normal;
+  const auto& [a, b, c] = triangle.normals;
+  const Vec3 mixed = mix(to_double(a), to_double(b), to_double(c));
+  const double size = std::copysign(length(mixed), dot(mixed, normal));
+  const Vec3 shading = size != 0 ? mixed / size : normal;
 
-Point triangle_point(const Surface& surface, const RTCHit& hit) {
-  const Mesh& mesh = *surface.mesh;
-  const auto [i, j, k] = mesh.triangles[hit.primID];
-  const double u = hit.u, v = hit.v;
-  const auto mix = [&](const auto& a, const auto& b, const auto& c) {
-    return (1 - u - v) * a + u * b + v * c;
-  };
-  const MeshVertex &a = surface.vertices[i], &b = surface.vertices[j], &c = surface.vertices[k];
-  const Vec3 p = to_double(a.position), q = to_double(b.position), r = to_double(c.position);
-  const Vec3 geometric = normalize(cross(q - p, r - p));
-  Vec3 shading =
-      mesh.normals.empty() ? geometric : mix(to_double(a.normal), to_double(b.normal), to_double(c.normal));
-  if (dot(shading, geometric) < 0) shading = -shading;
-  const double size = length(shading);
   Vec3 tangent;
-  if (!surface.tangents.empty())
-    tangent = mesh.normals.empty()
-                  ? surface.tangents[hit.primID]
-                  : unit_or_zero(mix(surface.tangents[i], surface.tangents[j], surface.tangents[k]));
-  Point point = {mix(p, q, r), geometric, size > 0 ? shading / size : geometric, tangent};
+  Point2 uv;
+  UvDerivatives derivatives;
+  if (!surface.tangents.empty()) tangent = tangent_at(surface, found.primID, mix);
   if (!surface.derivatives.empty()) {
-    const Point2 &uv_i = mesh.uvs[i], &uv_j = mesh.uvs[j], &uv_k = mesh.uvs[k];
-    point.uv = {mix(uv_i.x, uv_j.x, uv_k.x), mix(uv_i.y, uv_j.y, uv_k.y)};
+    const auto [i, j, k] = surface.mesh->triangles[found.primID];
+    const auto& uvs = surface.mesh->uvs;
+    uv = {mix(uvs[i].x, uvs[j].x, uvs[k].x), mix(uvs[i].y, uvs[j].y, uvs[k].y)};
     const UvDerivatives &d = surface.derivatives[i], &e = surface.derivatives[j], &f = surface.derivatives[k];
-    point.derivatives = {mix(d.du, e.du, f.du), mix(d.dv, e.dv, f.dv)};
+    derivatives = {mix(d.du, e.du, f.du), mix(d.dv, e.dv, f.dv)};
   }
-  return point;
+  return MaybeHit(std::in_place, position, normal, shading, tangent, uv, derivatives,
+                  dot(position - ray.origin, ray.direction), surface.offset, surface.object, surface.light);
 }
 
-RTCRay to_embree(const Ray& ray, float distance) {
-  RTCRay result{};
-  result.org_x = static_cast<float>(ray.origin.x);
-  result.org_y = static_cast<float>(ray.origin.y);
-  result.org_z = static_cast<float>(ray.origin.z);
-  result.dir_x = static_cast<float>(ray.direction.x);
-  result.dir_y = static_cast<float>(ray.direction.y);
-  result.dir_z = static_cast<float>(ray.direction.z);
-  result.tnear = 0;
-  result.tfar = distance;
-  result.mask = ~0u;
-  return result;
+// Member by member: clearing all of it first takes longer.
+void set_ray(RTCRay& to, const Ray& ray, float distance) {
+  to.org_x = static_cast<float>(ray.origin.x);
+  to.org_y = static_cast<float>(ray.origin.y);
+  to.org_z = static_cast<float>(ray.origin.z);
+  to.tnear = 0;
+  to.dir_x = static_cast<float>(ray.direction.x);
+  to.dir_y = static_cast<float>(ray.direction.y);
+  to.dir_z = static_cast<float>(ray.direction.z);
+  to.time = 0;
+  to.tfar = distance;
+  to.mask = ~0u;
+  to.id = to.flags = 0;
 }
 
 }  // namespace
@@ -257,7 +287,10 @@ void EmbreeScene::Impl::collect(const Scene& source, const std::function<bool(st
   }
   for (Surface& surface : surfaces) {
     surface.offset = surface.sphere ? offset_of(*surface.sphere) : offset_of(*surface.mesh);
-    if (surface.mesh) surface.vertices = vertices_of(*surface.mesh);
+    if (surface.mesh) {
+      surface.positions = positions_of(*surface.mesh);
+      surface.triangles = triangles_of(*surface.mesh, surface.positions);
+    }
     if (surface.light >= 0) continue;
     const std::size_t material = material_of(source, surface.object);
     if (surface.mesh && !is_isotropic(material)) surface.tangents = tangents_of(*surface.mesh);
@@ -299,35 +332,22 @@ EmbreeScene::EmbreeScene(const Scene& scene, const std::function<bool(std::size_
 EmbreeScene::~EmbreeScene() = default;
 
 std::optional<SurfaceHit> EmbreeScene::intersect(const Ray& ray) const {
-  RTCRayHit query{to_embree(ray, kInfinity), {}};
-  query.hit.geomID = query.hit.primID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  RTCRayHit query;
+  set_ray(query.ray, ray, kInfinity);
+  query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcIntersect1(impl_->scene.get(), &context, &query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
   const Surface& surface = impl_->surfaces[query.hit.geomID];
-  Point point =
-      surface.sphere
-          ? sphere_point(*surface.sphere, ray.origin + static_cast<double>(query.ray.tfar) * ray.direction)
-          : triangle_point(surface, query.hit);
-  if (surface.sphere && surface.has_coordinates) add_coordinates(point, surface.sphere->radius);
-  return SurfaceHit{
-      .position = point.position,
-      .geometric_normal = point.geometric_normal,
-      .shading_normal = point.shading_normal,
-      .tangent = point.tangent,
-      .uv = point.uv,
-      .derivatives = point.derivatives,
-      .distance = length(point.position - ray.origin),
-      .offset = surface.offset,
-      .object = surface.object,
-      .light = surface.light,
-  };
+  const Vec3 point = ray.origin + double{query.ray.tfar} * ray.direction;
+  return surface.sphere ? meet_sphere(surface, ray, point) : meet_triangle(surface, query.hit, ray, point);
 }
 
 bool EmbreeScene::occluded(const Ray& ray, double distance) const {
-  RTCRay query = to_embree(ray, static_cast<float>(distance * kShadowFraction));
+  RTCRay query;
+  set_ray(query, ray, static_cast<float>(distance * kShadowFraction));
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded1(impl_->scene.get(), &context, &query);

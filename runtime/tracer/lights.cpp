@@ -41,6 +41,26 @@ Lights::Lights(const Scene& scene) : scene_(scene), environment_(scene.environme
   }
 }
 
+Emission Lights::environment(const Vec3& direction) const {
+  const double density = environment_.can_sample() ? environment_.pdf(direction) / count_ : 0;
+  return {environment_.radiance(direction), density};
+}
+
+inline Emission Lights::quad(const QuadLight& light, const Vec3& direction, double distance) const {
+  const Vec3 area_normal = cross(light.edge_u, light.edge_v);  // its length is the area
+  const double projected_area = -dot(direction, area_normal);
+  if (projected_area <= 0) return {Rgb(), 0};
+  return {light.radiance, square(distance) / (projected_area * count_)};
+}
+
+// Of any direction from `from` that meets the sphere.
+Emission Lights::sphere(const SphereLight& light, const Vec3& from) const {
+  const Vec3 to_center = light.center - from;
+  const double sine2 = square(light.radius) / dot(to_center, to_center);
+  if (!(sine2 < 1)) return {Rgb(), 0};  // inside
+  return {light.radiance, cone_pdf(one_minus_cosine(sine2)) / count_};
+}
+
 std::optional<LightSample> Lights::sample(const Vec3& from, Rng& rng) const {
   if (count_ == 0) return {};
   auto chosen = static_cast<std::size_t>(rng.uniform() * count_);
@@ -108,26 +128,6 @@ Emission Lights::surface(int light, const Vec3& from, const Vec3& direction, dou
   const std::size_t quads = scene_.quad_lights.size();
   return i < quads ? quad(scene_.quad_lights[i], direction, distance)
                    : sphere(scene_.sphere_lights[i - quads], from);
-}
-
-Emission Lights::environment(const Vec3& direction) const {
-  const double density = environment_.can_sample() ? environment_.pdf(direction) / count_ : 0;
-  return {environment_.radiance(direction), density};
-}
-
-Emission Lights::quad(const QuadLight& light, const Vec3& direction, double distance) const {
-  const Vec3 area_normal = cross(light.edge_u, light.edge_v);  // its length is the area
-  const double projected_area = -dot(direction, area_normal);
-  if (projected_area <= 0) return {Rgb(), 0};
-  return {light.radiance, square(distance) / (projected_area * count_)};
-}
-
-// Of any direction from `from` that meets the sphere.
-Emission Lights::sphere(const SphereLight& light, const Vec3& from) const {
-  const Vec3 to_center = light.center - from;
-  const double sine2 = square(light.radius) / dot(to_center, to_center);
-  if (!(sine2 < 1)) return {Rgb(), 0};  // inside
-  return {light.radiance, cone_pdf(one_minus_cosine(sine2)) / count_};
 }
 
 }  // namespace sunbeam

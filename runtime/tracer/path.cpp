@@ -63,7 +63,10 @@ PathTracer::PathTracer(const Scene& scene, const EmbreeScene& geometry, const Li
                        std::span<const SurfaceBsdf> bsdfs)
     : scene_(scene), geometry_(geometry), lights_(lights), bsdfs_(bsdfs) {}
 
-PathTracer::Vertex PathTracer::make_vertex(const Ray& ray, const SurfaceHit& hit, BsdfRoom& room) const {
+// Inlined, as all that radiance() calls once: results would go through memory otherwise.
+[[gnu::always_inline]] inline PathTracer::Vertex PathTracer::make_vertex(const Ray& ray,
+                                                                         const SurfaceHit& hit,
+                                                                         BsdfRoom& room) const {
   const Vec3 wo = -ray.direction;
   const double side = dot(wo, hit.geometric_normal) < 0 ? -1 : 1;
   const auto material =
@@ -91,7 +94,7 @@ PathTracer::Vertex PathTracer::make_vertex(const Ray& ray, const SurfaceHit& hit
 // What the end of `ray` emits, weighted by MIS if the ray was drawn with density `bsdf_pdf`. Without one
 // (from the camera or from a Dirac lobe) no light sample could have found the same path, and all of it
 // counts.
-Rgb PathTracer::emission(const Ray& ray, const MaybeHit& hit, std::optional<double> bsdf_pdf) const {
+inline Rgb PathTracer::emission(const Ray& ray, const MaybeHit& hit, std::optional<double> bsdf_pdf) const {
   Rgb sum;
   const auto add = [&](const Emission& light) {
     sum +=
@@ -104,17 +107,16 @@ Rgb PathTracer::emission(const Ray& ray, const MaybeHit& hit, std::optional<doub
   return sum;
 }
 
-Rgb PathTracer::direct_light(const Vertex& vertex, Rng& rng, PathCounts& counts) const {
+inline Rgb PathTracer::direct_light(const Vertex& vertex, Rng& rng, PathCounts& counts) const {
   const auto light = lights_.sample(vertex.origin(), rng);
   if (!light || !vertex.is_above(light->wi)) return {};
   const Vec3 wi = vertex.frame.to_local(light->wi);
   if (wi.z <= 0) return {};
   const double shadowing = vertex.shadowing(light->wi);
   if (shadowing == 0) return {};
-  const EvalPdf value = vertex.bsdf->eval_pdf(vertex.wo, wi, rng);
-  if (is_black(value.f)) return {};
   ++counts.rays;
   if (geometry_.occluded(vertex.leave(light->wi), light->distance)) return {};
+  const EvalPdf value = vertex.bsdf->eval_pdf(vertex.wo, wi, rng);
   const double weight = light->is_dirac ? 1 : power_heuristic(light->pdf, value.pdf);
   return value.f * light->radiance * (wi.z * weight * shadowing / light->pdf);
 }

@@ -104,6 +104,7 @@ class Renderer {
       run_pass();
       if (settings_.noise > 0 && is_look(target_)) judge_noise();
     }
+    for (int tile = 0; tile < tile_count(); ++tile) publish(tile);
     result_.stats.fraction = stopped_ ? fraction() : 1;
     result_.stats.stopped = stopped_;
     return std::move(result_);
@@ -242,7 +243,7 @@ class Renderer {
 
   void report(int tile, const RenderStats& stats) {
     const std::lock_guard lock(mutex_);
-    publish(tile);
+    if (settings_.monitor) publish(tile);
     RenderStats& total = result_.stats;
     total.samples += stats.samples;
     total.rays += stats.rays;
@@ -266,8 +267,8 @@ class Renderer {
   // A tile is done when it and its neighbours are quiet: a rare bright path next door is a warning.
   void judge_noise() {
     double brightness = 0;
-    for (const float value : result_.mean.rgb) brightness += value;
-    const double dark = kDarkShare * brightness / static_cast<double>(result_.mean.rgb.size());
+    for (const PixelSums& pixel : pixels_) brightness += mean(pixel.mean());
+    const double dark = kDarkShare * brightness / static_cast<double>(pixel_count());
     std::vector<char> quiet(tile_done_.size());
     for (int tile = 0; tile < tile_count(); ++tile)
       quiet[static_cast<std::size_t>(tile)] = noise_of(tile, dark) <= settings_.noise;

@@ -125,7 +125,8 @@ TEST(Bake, AzimuthsByMaterial) {
   EXPECT_EQ(azimuths("microfacet = \"multiple\""), 9);
   EXPECT_EQ(azimuths("scattering_per_nm = 0.5"), 9);
   EXPECT_EQ(azimuths("scattering_per_nm = 0.5\nroughness = [0.1, 0.2]"), 8);
-  EXPECT_EQ(azimuths("roughness = [0.1, 0.2]"), 16);
+  EXPECT_EQ(azimuths("roughness = [0.1, 0.2]\nabsorption_path = \"sum\""), 16);
+  EXPECT_EQ(azimuths("roughness = [0.1, 0.2]\nabsorption_path = \"product\""), 12);
 }
 
 TEST(Bake, AnisotropicAxes) {

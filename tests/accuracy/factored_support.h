@@ -47,8 +47,6 @@ inline Recipe recipe_of(const FilmRow& row, const std::string& spectrum,
   std::vector<std::string> all = {"table.encoding=factored", "material.roughness=" + row.roughness,
                                   "material.transmission=" + row.transmission,
                                   "material.absorption_path=" + row.path, "spectrum.mode=" + spectrum};
-  // Three azimuths a quadrant, as by default, are off by 3 % of the rest at grazing; these are five.
-  if (!row.is_plain()) all.push_back("table.azimuths=16");
   all.insert(all.end(), overrides.begin(), overrides.end());
   return load_recipe(std::string(SUNBEAM_SOURCE_DIR) + "/tables/recipes/sunbeam.toml", all);
 }

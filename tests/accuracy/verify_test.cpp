@@ -194,7 +194,7 @@ TEST(Verify, QuantilesAreOfThePoints) {
   EXPECT_EQ(report.error.max, errors[39]);
 }
 
-// Nothing but walks knows anisotropic films, multiple facets or peaked phase functions.
+// Nothing but walks knows multiple facets or peaked phase functions.
 TEST(Verify, TheExactTruthNeedsAMaterialThatIsSolved) {
   Table table = clear_table();
   VerifySettings exact = settings(2, 0.1);
@@ -213,6 +213,8 @@ TEST(Verify, DefaultTruth) {
   };
   EXPECT_EQ(truth(""), Estimator::pfmc);
   EXPECT_EQ(truth("roughness = [0.1, 0.2]"), Estimator::pfmc);
+  EXPECT_EQ(truth("roughness = [0.1, 0.2]", "tolerance_median = 0.002"), Estimator::exact);
+  EXPECT_EQ(truth("roughness = 0.1\nmicrofacet = \"multiple\"", "tolerance_median = 0.002"), Estimator::pfmc);
   EXPECT_EQ(truth("scattering_per_nm = 1"), Estimator::bidirectional);
   EXPECT_EQ(truth("scattering_per_nm = 1", "tolerance_median = 0.002"), Estimator::exact);
 }

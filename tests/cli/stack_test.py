@@ -83,9 +83,7 @@ class Stack(support.CliTest):
             self.assertGreater(abs(float(rows[0]["first_r"]) / float(rows[1]["first_r"]) - 1), 0.05)
 
     def test_what_has_no_exact_evaluator_says_so(self):
-        needles = {"anisotropic": "'roughness'", "factored": "'roughness'", "scattering": "'scattering_per_nm'",
-                   "multiple": "'microfacet'"}
-        for name, needle in needles.items():
+        for name, needle in {"scattering": "'scattering_per_nm'", "multiple": "'microfacet'"}.items():
             commands = [("eval", f"{name}.toml", "--points", "-", "--estimator", "exact")]
             if name != "scattering":  # solved by adding and doubling
                 commands.append(("verify", f"{name}.exr", "--truth", "exact"))
@@ -93,6 +91,18 @@ class Stack(support.CliTest):
                 result = self.sunbeam(*command, stdin=POINTS)
                 self.check_refusal(result, needle, "exact evaluator allows")
             self.assertIn(needle, self.succeed("info", f"{name}.toml").out)
+
+    def test_anisotropic_films_have_exact_values_but_none_for_renderers(self):
+        for name, needle in {"anisotropic": "'roughness'", "factored": "'absorption_path'"}.items():
+            exact = self.rows(f"{name}.toml", POINTS, "--estimator", "exact")
+            for a, b in zip(exact, self.rows(f"{name}.toml", POINTS, "--estimator", "pfmc", "--samples", "20000")):
+                self.assertEqual(float(a["stderr_r"]), 0)
+                # 2 x 3 rows at 5 standard errors: 3e-6 in all.
+                self.assertAlmostEqual(float(a["rest_r"]), float(b["rest_r"]), delta=5 * float(b["stderr_r"]), msg=name)
+            self.assertIn("exact-quadrature", self.succeed("verify", f"{name}.exr", "--truth", "exact", "--points", "12").out)
+            self.assertIn(needle, self.succeed("info", f"{name}.toml").out)
+            self.check_refusal(self.sunbeam("render", f"{name}_scene.toml", "-o", "none.exr", "--material", "live",
+                                            "--estimator", "exact"), needle, "exact evaluator of a renderer allows")
 
     def test_table_and_live_render_the_same(self):
         """Mean of the picture inside a sphere under a constant sky."""

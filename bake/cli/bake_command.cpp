@@ -6,6 +6,7 @@
 #include "bake/cli/commands.h"
 #include "bake/cli/finish_bake.h"
 #include "bake/cli/interrupt.h"
+#include "bake/solved_job.h"
 #include "bake/sweep.h"
 #include "bake/version.h"
 #include "bake/work_folder.h"
@@ -25,9 +26,10 @@ void announce(const Recipe& recipe, Encoding encoding) {
                recipe.name, recipe.table.angles, recipe.grid[1].size(), recipe.grid[2].size());
     return;
   }
-  fmt::print(stderr, "{}: dense, {} parameter nodes, {} x {} cosines, {} azimuths\n", recipe.name,
+  fmt::print(stderr, "{}: dense, {} parameter nodes, {} x {} cosines, {} azimuths, values by {}\n", recipe.name,
              recipe.grid[0].size() * recipe.grid[1].size() * recipe.grid[2].size(), recipe.table.angles,
-             recipe.table.angles, recipe.table.azimuths);
+             recipe.table.angles, recipe.table.azimuths,
+             has_solution(recipe) ? "adding-doubling" : name_of(recipe.accuracy.estimator));
 }
 
 class BakeCommand {

@@ -59,7 +59,7 @@ class RecipeErrors(support.CliTest):
         self.check("table", "encoding", '"sparse"', 'found "sparse"', '"dense"')
         self.check("table", "frame", '"open"', 'found "open"', '"closed"')
         self.check("table", "frame", '"none"', 'found "none"', '"dense"')
-        self.check("accuracy", "noise", "0", "found 0;", "0.0001 to 1")
+        self.check("accuracy", "noise", "0", "found 0;", "1e-06 to 1")
         self.check("accuracy", "noise", "nan", "found nan")
         self.check("accuracy", "tolerance_median", "0.0", "found 0;")
         self.check("accuracy", "tolerance_p99", "-0.1", "found -0.1")

@@ -50,7 +50,7 @@ class Journal : public BlockStore {
   // Bytes at the end that are no whole record.
   std::uint64_t damaged_bytes() const { return damaged_bytes_; }
 
-  // On disk kSyncSeconds later at the latest. Throws Error (disk full) with the file as it was before.
+  // Flushed to disk if the last flush was kSyncSeconds ago. Throws Error (disk full) with the file as it was.
   void add(std::size_t task, const Block& block) override;
   bool has(std::size_t task) const override;
   BlockSummary summary(std::size_t task) const override;

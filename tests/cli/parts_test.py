@@ -7,7 +7,6 @@ import unittest
 import support
 
 SHARDS = 16
-HEADER_START = 8 + 8 + 32  # of a part: its kind, the size and the hash of the text that says what is baked
 
 
 class PartsTest(support.CliTest):
@@ -42,13 +41,22 @@ class Merge(PartsTest):
         self.succeed("bake", "tiny.toml", *support.BAKE_JOBS["dense"], "-o", "one.vdb")
         self.assertEqual((self.folder / "merged.vdb").read_bytes(), (self.folder / "one.vdb").read_bytes())
 
+    def check_merge(self, name, shards, *options):
+        names = [f"{name}_{k}.part" for k in range(1, shards + 1)]
+        for k, part in enumerate(names):
+            self.succeed("bake", "tiny.toml", *options, "--shard", f"{k + 1}/{shards}", "-o", part)
+        self.succeed("merge", *names, "-o", f"{name}.exr")
+        one = self.succeed("bake", "tiny.toml", *options, "-o", f"{name}_one.exr")
+        self.assertEqual((self.folder / f"{name}.exr").read_bytes(), (self.folder / f"{name}_one.exr").read_bytes())
+        return one
+
     def test_more_shards_than_blocks(self):
-        for k in range(1, 21):
-            self.succeed("bake", "tiny.toml", "--set", "table.encoding=dense", "--shard", f"{k}/20", "-o", f"few_{k}.part")
-        names = [f"few_{k}.part" for k in range(1, 21)]
-        self.succeed("merge", *names, "-o", "few.exr")
-        self.succeed("bake", "tiny.toml", "--set", "table.encoding=dense", "-o", "few_one.exr")
-        self.assertEqual((self.folder / "few.exr").read_bytes(), (self.folder / "few_one.exr").read_bytes())
+        self.check_merge("few", 20, "--set", "table.encoding=dense")
+
+    def test_every_part_makes_the_same_plan(self):
+        planned = ("--set", "table.encoding=dense", "--set", "accuracy.interpolation=0.0005")
+        one = self.check_merge("planned", 2, *planned)
+        self.assertRegex(one.err, r"plan: .* (\d+) -> (?!\1\b)\d+ nodes", "the plan must change something")
 
     def test_a_table_beyond_its_tolerances_says_what_to_do(self):
         """One machine would go on to the other encoding."""
@@ -104,7 +112,7 @@ class Refused(PartsTest):
         def flip(place, part):
             return part[:place] + bytes([part[place] ^ 1 << draw.randrange(8)]) + part[place + 1:]
 
-        for place in (0, 8, 20, HEADER_START + 3, HEADER_START + 130, *(draw.randrange(size) for _ in range(12)), size - 1):
+        for place in (0, 8, 20, support.HEADER_START + 3, support.HEADER_START + 130, *(draw.randrange(size) for _ in range(12)), size - 1):
             with self.subTest(place=place):
                 self.refuse_parts(self.damaged(functools.partial(flip, place)), "damaged.part: ")
 

@@ -15,8 +15,6 @@ import unittest
 import support
 
 PREVIEW = ("--preview",)  # of 16 points its error, which would be most of the time
-# Of a journal: its kind, the size and the hash of the text that says what is baked.
-HEADER_START = 8 + 8 + 32
 JOURNALS = {"dense": "dense.blocks", "factored": "factored.blocks", "slab": "dense.blocks"}
 
 
@@ -252,7 +250,7 @@ class Unfinished(RestartTest):
         for kind in support.BAKE_JOBS:
             journal = self.take(kind, "h.exr")
             whole = journal.read_bytes()
-            header = HEADER_START + int.from_bytes(whole[8:16], "little")
+            header = support.HEADER_START + int.from_bytes(whole[8:16], "little")
             for damage in ("flip", "cut", "add"):
                 with self.subTest(kind=kind, damage=damage):
                     journal = self.take(kind, "h.exr")
@@ -266,7 +264,7 @@ class Unfinished(RestartTest):
         journal = self.work("stopped_dense.exr") / "dense.blocks"
         original = journal.read_bytes()
         self.addCleanup(journal.write_bytes, original)
-        size = HEADER_START + int.from_bytes(original[8:16], "little")
+        size = support.HEADER_START + int.from_bytes(original[8:16], "little")
         draw = random.Random(2)
         for place in [0, 8, *(draw.randrange(16, size) for _ in range(6))]:
             with self.subTest(place=place):

@@ -26,6 +26,12 @@ kill -KILL $!
 wait $!
 """
 
+FAILS_ALWAYS = """\
+#!/bin/sh
+[ "$1 ${SLURM_ARRAY_TASK_ID:-}" != "bake 2" ] || exit 9
+exec "$REAL_SUNBEAM" "$@"
+"""
+
 
 class SlurmArray(support.CliTest):
     @classmethod
@@ -55,28 +61,40 @@ class SlurmArray(support.CliTest):
         return "".join(f"\n== {path.name}\n{path.read_text()}"
                        for path in sorted((self.folder / f"{output}.parts").glob("*.log")))
 
+    def script(self, name, text):
+        path = self.folder / name
+        path.write_text(text)
+        path.chmod(0o755)
+        return str(path)
+
+    def check_table(self, name, *recipe):
+        """It is that of one machine, and of the parts only the logs are left."""
+        self.succeed("bake", *recipe, "-o", "one.exr")
+        self.assertTrue((self.folder / name).exists(), self.logs(name))
+        self.assertEqual((self.folder / name).read_bytes(), (self.folder / "one.exr").read_bytes())
+        self.assertEqual(sorted(p.name for p in (self.folder / f"{name}.parts").iterdir()),
+                         ["1.log", "2.log", "3.log", "4.log", "merge.log"])
+
     def test_a_killed_part_goes_on_and_the_table_is_that_of_one_machine(self):
-        wrapper = self.folder / "fails_once.sh"
-        wrapper.write_text(FAILS_ONCE)
-        wrapper.chmod(0o755)
-        self.submit("farm.exr", *RECIPE, SUNBEAM=str(wrapper),
+        self.submit("farm.exr", *RECIPE, SUNBEAM=self.script("fails_once.sh", FAILS_ONCE),
                     JOURNAL=str(self.folder / "farm.exr.parts/3.part.work/dense.blocks"))
         logs = self.logs("farm.exr")
         self.assertIn("exit code 137: queued again", logs)
         self.assertRegex(logs, r"resumed with [1-9]\d* of 45 blocks")
-        self.succeed("bake", *RECIPE, "-o", "one.exr")
-        self.assertTrue((self.folder / "farm.exr").exists(), logs)
-        self.assertEqual((self.folder / "farm.exr").read_bytes(), (self.folder / "one.exr").read_bytes())
-        self.assertEqual(sorted(p.name for p in (self.folder / "farm.exr.parts").iterdir()),
-                         ["1.log", "2.log", "3.log", "4.log", "merge.log"])
+        self.check_table("farm.exr", *RECIPE)
 
-    def test_a_part_that_always_fails_is_given_up_and_nothing_is_merged(self):
-        self.submit("never.exr", *RECIPE, "--set", "material.albedo=2", RESTARTS="1")
-        logs = self.logs("never.exr")
-        self.assertEqual(logs.count("exit code 2: queued again"), PARTS, logs)
-        self.assertEqual(logs.count("material.albedo"), 2 * PARTS, logs)
-        self.assertFalse((self.folder / "never.exr").exists())
+    def test_a_part_that_always_fails_is_given_up_and_the_same_command_does_the_rest(self):
+        recipe = RECIPE[:-2]
+        self.submit("later.exr", *recipe, SUNBEAM=self.script("fails.sh", FAILS_ALWAYS), RESTARTS="1")
+        logs = self.logs("later.exr")
+        self.assertEqual(logs.count("exit code 9: queued again"), 1, logs)
+        self.assertFalse((self.folder / "later.exr").exists())
         self.assertNotIn("merge.log", logs)
+        self.submit("later.exr", *recipe)
+        logs = self.logs("later.exr")
+        self.assertEqual(logs.count("is there already"), PARTS - 1, logs)
+        self.assertEqual(logs.count(": part 2 of 4, "), 1, logs)
+        self.check_table("later.exr", *recipe)
 
 
 if __name__ == "__main__":

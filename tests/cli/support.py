@@ -86,6 +86,9 @@ BAKE_JOBS = {
              "grid.film_thickness_nm={from=200, to=400, count=9}", "--set", "table.azimuths=3"),
 }
 
+# Work and parts begin with their kind, and size and hash of the text that says what is baked.
+HEADER_START = 8 + 8 + 32
+
 # With a black base nothing but the film remains: no walks to speak of.
 BLACK_BASE = ("--set", "material.albedo=0")
 

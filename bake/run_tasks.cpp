@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <functional>
 #include <mutex>
 
 #include "bake/parallel_tasks.h"
@@ -34,10 +35,12 @@ class TaskRun {
   }
 
  private:
-  void run_group(const std::vector<std::size_t>& tasks) {
+  void run_group(std::vector<std::size_t> tasks) {
     if (tasks.empty() || should_stop()) return;
     job_.prepare({tasks.front(), tasks.back() + 1}, settings_.threads);
-    std::atomic<std::size_t> next = 0;  // in order, so that what is done has few gaps
+    // The longest first: at the end no thread waits for one.
+    std::ranges::stable_sort(tasks, std::greater(), [&](std::size_t task) { return job_.cost(task); });
+    std::atomic<std::size_t> next = 0;
     run_parallel_tasks(tasks.size(), settings_.threads, {}, [&](std::size_t) {
       const std::size_t task = tasks[next++];
       if (should_stop()) return;

@@ -2,6 +2,8 @@
 
 #include <half.h>
 
+#include <map>
+
 #include "bake/dense_nodes.h"
 #include "bake/live/slab_films.h"
 #include "bake/packed.h"
@@ -84,12 +86,10 @@ class SolvedJob : public BakeJob {
   }
 
   void prepare(const TaskRange& tasks, int threads) override {
-    const std::vector<Axis>& grid = recipe_.grid;
-    const double base_ior = grid[1].nodes[tasks.first / order_.thicknesses];
-    const Material material = Parameters{grid[0].high(), base_ior, 0}.applied_to(recipe_.material);
-    films_ = std::make_unique<SlabFilms>(
-        material, recipe_.spectrum.wavelengths(material),
-        SlabFilms::Grid{grid[0].nodes, grid[2].nodes, nodes_.cosines(), nodes_.azimuths()});
+    const std::size_t ior = tasks.first / order_.thicknesses;
+    if (!begun_.contains(ior)) begin_from(ior, threads);
+    films_ = std::move(begun_.at(ior));
+    begun_.erase(ior);
     films_->prepare(
         tasks.first % order_.thicknesses, (tasks.end - 1) % order_.thicknesses + 1,
         [&](std::size_t count, const auto& task) { run_parallel_tasks(count, threads, {}, task); });
@@ -128,11 +128,28 @@ class SolvedJob : public BakeJob {
     append(bytes, std::span(halves));
   }
 
+  // What comes before prepare() runs on one thread, hence some base IORs at once.
+  void begin_from(std::size_t ior, int threads) {
+    constexpr std::size_t kAtOnce = 4;
+    begun_.clear();
+    const std::size_t count = std::min(kAtOnce, order_.iors - ior);
+    for (std::size_t k = 0; k < count; ++k) begun_[ior + k];
+    run_parallel_tasks(count, threads, {}, [&](std::size_t k) {
+      const std::vector<Axis>& grid = recipe_.grid;
+      const Material material =
+          Parameters{grid[0].high(), grid[1].nodes[ior + k], 0}.applied_to(recipe_.material);
+      begun_.at(ior + k) = std::make_unique<SlabFilms>(
+          material, recipe_.spectrum.wavelengths(material),
+          SlabFilms::Grid{grid[0].nodes, grid[2].nodes, nodes_.cosines(), nodes_.azimuths()});
+    });
+  }
+
   const Recipe& recipe_;
   std::uint64_t seed_;
   DenseNodes nodes_;
   Order order_;
-  std::unique_ptr<SlabFilms> films_;  // of the group that is prepared
+  std::map<std::size_t, std::unique_ptr<SlabFilms>> begun_;  // by base IOR, not prepared yet
+  std::unique_ptr<SlabFilms> films_;                         // of the group that is prepared
 };
 
 }  // namespace

@@ -180,8 +180,8 @@ int default_azimuths(const Material& material) {
   return material.absorption_path == AbsorptionPath::sum ? 16 : 12;
 }
 
-// Only the noisiest cells have it, so the worst points of a table may take a good share of their tolerance.
-double default_noise(double tolerance_p99) { return std::clamp(tolerance_p99 / 4, 1e-6, 0.005); }
+// Only the noisiest cells have it.
+double default_noise(double tolerance_median) { return std::min(tolerance_median, 0.005); }
 
 // As many as the material's rest needs: see recipe.h.
 int read_azimuths(const ConfigTable& config, const Material& material) {
@@ -233,7 +233,8 @@ Recipe parse_recipe(const std::string& text, const std::string& name,
   recipe.accuracy.tolerance_median =
       accuracy.number("tolerance_median", {1e-6, 10}, recipe.accuracy.tolerance_median);
   recipe.accuracy.tolerance_p99 = accuracy.number("tolerance_p99", {1e-6, 10}, recipe.accuracy.tolerance_p99);
-  recipe.accuracy.noise = accuracy.number("noise", {1e-6, 1}, default_noise(recipe.accuracy.tolerance_p99));
+  recipe.accuracy.noise =
+      accuracy.number("noise", {1e-6, 1}, default_noise(recipe.accuracy.tolerance_median));
   if (accuracy.choice("estimator", {"unidirectional", "bidirectional"}, 0) == 1)
     recipe.accuracy.estimator = Estimator::bidirectional;
 

@@ -46,8 +46,8 @@ struct Recipe {
   } table;
 
   struct {
-    // Relative standard error allowed of any tabulated value; unless given, a quarter of tolerance_p99, at
-    // most 0.005.
+    // Relative standard error allowed of any tabulated value; unless given, tolerance_median, at most
+    // 0.005.
     double noise = 0.005;
     double tolerance_median = 0.01;  // of verify's error
     double tolerance_p99 = 0.05;

@@ -30,8 +30,8 @@ const std::string kRecipes = SUNBEAM_SOURCE_DIR "/tables/recipes/";
 
 struct Settings {
   int thicknesses = 64, iors = 16, absorptions = 16;
-  int rows = 48;  // of node-by-node PFMC
-  double megabytes = 4500;
+  int rows = 48;            // of node-by-node PFMC
+  double megabytes = 6600;  // uncompressed: more than 4 GiB as a file
   std::string folder = ".";
 };
 

@@ -26,9 +26,9 @@ void announce(const Recipe& recipe, Encoding encoding) {
                recipe.name, recipe.table.angles, recipe.grid[1].size(), recipe.grid[2].size());
     return;
   }
-  fmt::print(stderr, "{}: dense, {} parameter nodes, {} x {} cosines, {} azimuths, values by {}\n", recipe.name,
-             recipe.grid[0].size() * recipe.grid[1].size() * recipe.grid[2].size(), recipe.table.angles,
-             recipe.table.angles, recipe.table.azimuths,
+  fmt::print(stderr, "{}: dense, {} parameter nodes, {} x {} cosines, {} azimuths, values by {}\n",
+             recipe.name, recipe.grid[0].size() * recipe.grid[1].size() * recipe.grid[2].size(),
+             recipe.table.angles, recipe.table.angles, recipe.table.azimuths,
              has_solution(recipe) ? "adding-doubling" : name_of(recipe.accuracy.estimator));
 }
 

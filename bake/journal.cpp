@@ -99,7 +99,9 @@ std::unique_ptr<Journal> Journal::open(const std::string& path, const BakeIdenti
   const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor < 0) throw Error(path + ": cannot write: " + std::strerror(errno));
   std::unique_ptr<Journal> journal(new Journal(path, descriptor));
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) throw Error(path + ": another bake is writing it");
+  // Some network file systems know no locks: then nobody is shut out.
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw Error(path + ": another bake is writing it");
   struct stat status {};
   if (::fstat(descriptor, &status) != 0) journal->fail("cannot read");
   try {

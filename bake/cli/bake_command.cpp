@@ -17,7 +17,7 @@
 namespace sunbeam {
 namespace {
 
-constexpr int kVerifyPoints = 250, kPreviewPoints = 16;
+constexpr int kPreviewPoints = 16;
 constexpr int kInterrupted = 130;  // as a shell reports Ctrl-C
 
 void announce(const Recipe& recipe, Encoding encoding) {
@@ -107,7 +107,7 @@ class BakeCommand {
       if (!run_blocks(*job, {0, job->tasks()}, *journal)) return kInterrupted;
       FinishedBake table(plan_.recipe, *job, *journal, plan_.summary);
       const bool good =
-          table.measure_error(options_.preview ? kPreviewPoints : kVerifyPoints, options_.threads, form_);
+          table.measure_error(options_.preview ? kPreviewPoints : kCheckPoints, options_.threads, form_);
       if (encodings.size() > 1)
         fmt::print(stderr, "encoding auto: {} {} the tolerances (median {:g}, p99 {:g})\n", name_of(encoding),
                    good ? "is the smallest that meets" : "misses", plan_.recipe.accuracy.tolerance_median,

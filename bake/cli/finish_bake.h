@@ -8,6 +8,8 @@
 
 namespace sunbeam {
 
+inline constexpr int kCheckPoints = 250;  // of the error that a table carries
+
 class FinishedBake {
  public:
   // `blocks` must have all of the job's, and outlive this, as recipe and job must. `plan` as in Plan.

@@ -9,12 +9,6 @@
 #include "sunbeam/table_vdb.h"
 
 namespace sunbeam {
-namespace {
-
-constexpr int kVerifyPoints = 250;  // as of a bake in one go
-
-}  // namespace
-
 int run_merge(const MergeOptions& options) {
   require_table_extension(options.output);
   Parts parts(options.parts);
@@ -25,7 +19,7 @@ int run_merge(const MergeOptions& options) {
   parts.require_whole(*job);
   require_writable(options.output);
   FinishedBake table(recipe, *job, parts, identity.plan);
-  const bool good = table.measure_error(kVerifyPoints, options.threads,
+  const bool good = table.measure_error(kCheckPoints, options.threads,
                                         options.progress == "json" ? ProgressForm::json : ProgressForm::text);
   table.save(options.output);
   const auto encodings = encodings_of(recipe);

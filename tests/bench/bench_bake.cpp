@@ -6,6 +6,7 @@
 // Node-by-node PFMC of a grid of that size takes days, so it is run for some rows (one wi of one parameter
 // node) drawn at random, and their mean cost stands for all.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
@@ -18,6 +19,7 @@
 #include "bake/walked_job.h"
 #include "sunbeam/core/file.h"
 #include "sunbeam/core/rng.h"
+#include "tests/bench/account.h"
 #include "tests/bench/child_process.h"
 
 namespace sunbeam {
@@ -119,13 +121,19 @@ Json measure_growth(const Settings& s) {
   return result;
 }
 
+// Turn by turn, the median of the ratios.
 Json measure_threads(const Settings& s) {
   Json result;
   for (const Family& f : kFamilies) {
     const Recipe recipe = grid_of(f.recipe, f.overrides, s.thicknesses, s);
-    const double two = bake_cost(recipe, 2).seconds, one = bake_cost(recipe, 1).seconds;
-    result[f.name] = {{"one", one}, {"two", two}, {"speedup", one / two}};
-    fmt::print("two threads against one, {}: {:.2f} times as fast\n", f.name, one / two);
+    std::vector<double> speedups;
+    for (int round = 0; round < s.rounds; ++round) {
+      const double two = bake_cost(recipe, 2).seconds, one = bake_cost(recipe, 1).seconds;
+      speedups.push_back(one / two);
+    }
+    result[f.name] = speedups;
+    fmt::print("two threads against one, {}: {:.2f} times as fast ({} rounds: {:.2f})\n", f.name,
+               median(speedups), s.rounds, fmt::join(speedups, ", "));
   }
   return result;
 }
@@ -168,7 +176,7 @@ int run(int argc, char** argv) {
   app.add_option("--megabytes", s.megabytes, "Of the table of --part memory, uncompressed");
   app.add_flag("--small", quick, "A small grid, to see that it works");
   CLI11_PARSE(app, argc, argv);
-  if (quick) s = {16, 2, 2, 4, s.megabytes, s.folder};
+  if (quick) s = {16, 2, 2, 4, 1, s.megabytes, s.folder};
   Json result;
   const auto wants = [&](const char* name) {
     return part == name || (part == "quick" && std::string(name) != "memory");

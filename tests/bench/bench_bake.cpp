@@ -177,7 +177,7 @@ int run(int argc, char** argv) {
   app.add_option("--megabytes", s.megabytes, "Of the table of --part memory, uncompressed");
   app.add_flag("--small", quick, "A small grid, to see that it works");
   CLI11_PARSE(app, argc, argv);
-  if (quick) s = {16, 2, 2, 4, 1, 1, s.megabytes, s.folder};
+  if (quick) s = {16, 2, 2, 4, 1, s.megabytes, s.folder};
   Json result;
   const auto wants = [&](const char* name) {
     return part == name || (part == "quick" && std::string(name) != "memory");

@@ -135,7 +135,7 @@ class Interrupted(RestartTest):
         """A line a second of each phase, and one at its end."""
         lines = [json.loads(line) for line in said.splitlines() if line.startswith("{")]
         bake = [line for line in lines if line["phase"] == "bake"]
-        self.assertGreaterEqual(len(bake), 2, said)
+        self.assertGreaterEqual(len(bake), 1, said)  # the last; more if it takes longer than a second
         self.assertEqual([line["phase"] for line in lines[len(bake):]], ["verify"] * (len(lines) - len(bake)))
         for phase, unit, total in ((bake, "blocks", self.BLOCKS), (lines[len(bake):], "points", 250)):
             fractions = [line["fraction"] for line in phase]

@@ -7,10 +7,6 @@ namespace {
 
 constexpr double kLowestCosine = 0.01;
 
-Symmetry symmetry_of(const Recipe& recipe) {
-  return recipe.material.roughness.is_isotropic() ? Symmetry::isotropic : Symmetry::anisotropic;
-}
-
 // `count` azimuths from 0, without the end that is the beginning again.
 std::vector<double> nodes_round(std::size_t count) {
   auto nodes = spaced_nodes(0, 2 * kPi, count + 1);

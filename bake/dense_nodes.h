@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "bake/bake_job.h"
 #include "bake/orbits.h"
 #include "bake/recipe.h"
 #include "sunbeam/table.h"

@@ -171,7 +171,7 @@ NdArray outlined_array(const Recipe& recipe, const char* name, const std::vector
   return NdArray::outline(name, axes, precision, 1);
 }
 
-// Mean of replicates, and their relative standard error where their sum is not darker than `darkest`.
+// Mean of replicates, and the variance of that mean.
 class Replicates {
  public:
   explicit Replicates(std::size_t size) : sum_(size), squares_(size) {}
@@ -235,7 +235,7 @@ class FactoredJob : public BakeJob {
   Table table(const Blocks& blocks) const override {
     Table table;
     table.material = recipe_.material;
-    table.symmetry = recipe_.material.roughness.is_isotropic() ? Symmetry::isotropic : Symmetry::anisotropic;
+    table.symmetry = symmetry_of(recipe_);
     table.factors = outline_;
     for (NdArray* array : {&table.factors.arrival, &table.factors.returned, &table.factors.exchange})
       if (array->is_outline())

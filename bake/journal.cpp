@@ -31,25 +31,15 @@ constexpr std::size_t kHeaderStart =
 
 std::string bytes_of(const RecordHead& head) { return {reinterpret_cast<const char*>(&head), sizeof head}; }
 
-std::string hash_of(std::string_view head, std::string_view values) {
+std::string record_hash(const RecordHead& head, std::string_view values) {
   ContentHash hash;
-  hash.add(head);
+  hash.add(bytes_of(head));
   hash.add(values);
   return hash.text();
 }
 
-std::string record_hash(const RecordHead& head, std::string_view values) {
-  return hash_of(bytes_of(head), values);
-}
-
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-std::uint64_t whole_number(const std::string& text) {
-  double value = 0;
-  if (!parse_number(text, value) || !(value >= 0)) throw Error("found '" + text + "'; expected a number");
-  return static_cast<std::uint64_t>(value);
 }
 
 }  // namespace
@@ -72,8 +62,8 @@ BakeIdentity BakeIdentity::parse(const std::string& text) {
     if (key == "encoding") identity.encoding = value;
     if (key == "seed") identity.seed = std::stoull(value);
     if (key == "plan") identity.plan = value;
-    if (key == "shard") identity.shard = static_cast<int>(whole_number(value));
-    if (key == "shards") identity.shards = static_cast<int>(whole_number(value));
+    if (key == "shard") identity.shard = std::stoi(value);
+    if (key == "shards") identity.shards = std::stoi(value);
   }
   identity.recipe = text.substr(blank + 2);
   return identity;
@@ -138,7 +128,7 @@ void Journal::write_header(const BakeIdentity& identity) {
   const std::string text = identity.text();
   const std::uint64_t size = text.size();
   append(std::string(kMagic) + std::string(reinterpret_cast<const char*>(&size), sizeof size) +
-         hash_of({}, text) + text);
+         content_hash(text) + text);
   sync();
 }
 
@@ -154,7 +144,7 @@ void Journal::read_header() {
   end_ = kHeaderStart + text.size();
   if (text.empty() || !read_at(kHeaderStart, text.data(), text.size()))
     throw Error(path_ + ": its header is cut short");
-  if (hash_of({}, text) != std::string_view(hash, sizeof hash))
+  if (content_hash(text) != std::string_view(hash, sizeof hash))
     throw Error(path_ + ": its header is damaged");
   identity_ = BakeIdentity::parse(text);
 }

@@ -1,13 +1,11 @@
 #include "bake/plan.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "bake/cell.h"
 #include "bake/solved_job.h"
 #include "bake/sweep.h"
 #include "sunbeam/core/text.h"
-#include "sunbeam/core/warp.h"
 #include "sunbeam/table_bsdf.h"
 
 namespace sunbeam {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
 #include <filesystem>
 
 #include "bake/version.h"
@@ -35,13 +34,12 @@ WorkFolder::WorkFolder(const std::string& output, bool resume) : path_(output + 
 std::optional<Plan> WorkFolder::saved_plan(const Recipe& recipe, std::uint64_t seed) const {
   std::error_code ignored;
   if (!fs::exists(plan_path(), ignored)) return {};
-  const auto lines = split(read_file(plan_path()), '\n');
+  const std::string text = read_file(plan_path());
+  const auto lines = split(text, '\n');
   if (lines.size() < 3 || lines[0] + "\n" != first_line(recipe, seed))
     throw Error(fmt::format("{}: holds the plan of another bake: found '{}'; expected '{}'", plan_path(),
                             lines[0], first_line(recipe, seed)));
-  const auto text = read_file(plan_path());
-  Plan plan{parse_recipe(text, plan_path()), lines[1].substr(2)};
-  return plan;
+  return Plan{parse_recipe(text, plan_path()), lines[1].substr(2)};
 }
 
 void WorkFolder::save(const Plan& plan, const Recipe& recipe, std::uint64_t seed) const {

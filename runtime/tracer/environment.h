@@ -15,6 +15,9 @@ class Environment {
   // Only a map can be sampled. A constant environment is left to BSDF sampling, which is optimal for it.
   bool can_sample() const { return !source_.map.empty(); }
 
+  // Of the map over the sphere, channels averaged. Only if can_sample().
+  double mean_radiance() const { return kPi / 2 * rows_.integral(); }
+
   // Radiance along the unit direction `wi` that points away from the scene.
   Rgb radiance(const Vec3& wi) const;
 

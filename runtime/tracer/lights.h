@@ -1,13 +1,14 @@
 // All sources of light of a scene: quads, spheres, points, far-off ones and the environment.
 //
-// A sample picks one of the sources that can be sampled (all but a constant environment) UNIFORMLY; every
-// density below has that choice in it.
+// A sample picks one of the sources that can be sampled (all but a constant environment) as light_choice.h
+// tells; every density below has that choice in it and thus depends on the receiver.
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "runtime/tracer/environment.h"
+#include "runtime/tracer/light_choice.h"
 #include "runtime/tracer/scene.h"
 #include "sunbeam/core/rng.h"
 
@@ -41,12 +42,14 @@ class Lights {
   // Black on the back side.
   Emission surface(int light, const Vec3& from, const Vec3& direction, double distance) const;
 
-  // Visits the Emission of everything that a ray with unit `direction` sees when it leaves the scene.
+  // Visits the Emission of everything that a ray from `from` with unit `direction` sees when it leaves the
+  // scene.
   template <class Visit>
-  void for_each_far_off(const Vec3& direction, Visit visit) const {
-    visit(environment(direction));
-    for (const Disc& disc : discs_)
-      if (dot(direction, disc.towards) >= disc.cos_radius) visit(Emission{disc.radiance, disc.pdf});
+  void for_each_far_off(const Vec3& from, const Vec3& direction, Visit visit) const {
+    visit(environment(from, direction));
+    for (std::size_t i = 0; i < discs_.size(); ++i)
+      if (dot(direction, discs_[i].towards) >= discs_[i].cos_radius)
+        visit(Emission{discs_[i].radiance, choice_.chance(first_disc() + i, from) * discs_[i].pdf});
   }
 
  private:
@@ -55,23 +58,21 @@ class Lights {
     Vec3 towards;
     double cos_radius;
     Rgb radiance;
-    double pdf;  // its choice included
+    double pdf;  // once chosen; 0 without size
   };
 
-  Emission environment(const Vec3& direction) const;
-  Emission quad(const QuadLight& light, const Vec3& direction, double distance) const;
-  Emission sphere(const SphereLight& light, const Vec3& from) const;
-  std::optional<LightSample> sample_quad(const QuadLight& light, const Vec3& from, Rng& rng) const;
-  std::optional<LightSample> sample_sphere(const SphereLight& light, const Vec3& from, Rng& rng) const;
-  std::optional<LightSample> sample_point(const PointLight& light, const Vec3& from) const;
-  std::optional<LightSample> sample_directional(std::size_t light, Rng& rng) const;
-  std::optional<LightSample> sample_environment(Rng& rng) const;
+  std::size_t first_disc() const {
+    return scene_.quad_lights.size() + scene_.sphere_lights.size() + scene_.point_lights.size();
+  }
+  Emission environment(const Vec3& from, const Vec3& direction) const;
+  std::optional<LightSample> sample_directional(std::size_t light, double chance, Rng& rng) const;
+  std::optional<LightSample> sample_environment(double chance, Rng& rng) const;
 
   const Scene& scene_;
   Environment environment_;
-  std::vector<Disc>
-      discs_;     // of the directional lights; cos_radius 2, which nothing meets, of those without size
-  double count_;  // of sources that can be sampled
+  LightChoice choice_;
+  std::vector<Disc> discs_;  // of the directional lights; cos_radius 2, which nothing meets, of those without
+                             // size
 };
 
 }  // namespace sunbeam

@@ -101,7 +101,7 @@ inline Rgb PathTracer::emission(const Ray& ray, const MaybeHit& hit, std::option
         bsdf_pdf && light.pdf > 0 ? light.radiance * power_heuristic(*bsdf_pdf, light.pdf) : light.radiance;
   };
   if (!hit)
-    lights_.for_each_far_off(ray.direction, add);
+    lights_.for_each_far_off(ray.origin, ray.direction, add);
   else if (hit->light >= 0)
     add(lights_.surface(hit->light, ray.origin, ray.direction, hit->distance));
   return sum;

@@ -176,6 +176,29 @@ TEST(Transport, LightsAddUp) {
   EXPECT_LT(estimate.standard_error, 0.005);
 }
 
+TEST(Transport, UnlikeLightsAddUpWhateverTheMisWeights) {
+  // Side by side: the quad, spheres of (R / d)^2 = 0.01 near by and far off at cos = 0.6, a sun at 60
+  // degrees.
+  expect_radiance(kQuadLight + R"(
+                    [[light]]
+                    type = "sphere"
+                    radiance = 100
+                    radius = 0.4
+                    center = [-3.2, 0, 2.4]
+                    [[light]]
+                    type = "sphere"
+                    radiance = 20
+                    radius = 10
+                    center = [0, 80, 60]
+                    [[light]]
+                    type = "directional"
+                    irradiance = 5
+                    angle_deg = 20
+                    towards = [0, -1.7320508, 1]
+                  )",
+                  quad_radiance() + 0.5 * (100 + 20) * 0.01 * 0.6 + 0.5 * kInvPi * 5 * 0.5);
+}
+
 TEST(Transport, EnvironmentMapLightsThePlaneAsItsIntegralSays) {
   Scene scene = scene_from(kPlane);
   scene.environment.map = Image(32, 16);

@@ -10,7 +10,8 @@
 // with channels averaged, and nothing occluded. Nine tenths of the samples follow the weights, as in the
 // light sampling of Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., section 12.6, but without
 // a tree: every choice looks at all sources, which suits some dozens. The other tenth is shared evenly, so a
-// source that shines where all the heavier ones are hidden is found, too.
+// source that shines where all the heavier ones are hidden is found, too. Neither the cosine at a quad nor
+// that at the receiver is in the weights: neither gained in variance times time beyond its noise.
 #pragma once
 
 #include <vector>

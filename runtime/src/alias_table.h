@@ -51,7 +51,7 @@ class AliasTable {
   }
 
   // Bits in place of a choice, which a processor would guess wrong.
-  std::size_t draw(std::uint32_t random) const {
+  std::uint32_t draw(std::uint32_t random) const {
     const std::uint32_t bin = random / kWhole, packed = bins_[bin];
     const std::uint32_t stays = random % kWhole < threshold(packed), other = alias(packed);
     return other ^ ((other ^ bin) & (0 - stays));

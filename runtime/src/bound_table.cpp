@@ -53,6 +53,7 @@ BoundTable::BoundTable(const Table& table, const Material& material)
 }
 
 void BoundTable::take_rest(const Table& table) {
+  ends_.resize(BoundRest::kScaleCosines + 1);
   film_.resize(kFilmNodes + 1);
   const auto cosine_of = [](int node) { return static_cast<double>(node) / (kFilmNodes - 1); };
   if (!table.is_factored()) {
@@ -69,7 +70,8 @@ void BoundTable::take_rest(const Table& table) {
   factored.film().fold(material_.film_thickness_nm, material_.base_ior, cosines, folded.data());
   for (int i = 0; i < kFilmNodes; ++i) film_[i] = Color4{folded[i].r, folded[i].g, folded[i].b, 0};
   const auto& bound = rest_.emplace<BoundRest>(factored, symmetry_);
-  if (bound.is_isotropic()) scales_ = bound.scales();
+  has_scales_ = bound.is_isotropic();
+  if (has_scales_) std::copy(bound.scales().begin(), bound.scales().end(), ends_.begin());
   if (const auto known = table.info.find("noise"); known != table.info.end())
     parse_number(known->second, noise_);
 }
@@ -206,7 +208,7 @@ void BoundTable::prepare_sampling() {
   }
   for (int k = 0; k < BoundRest::kScaleCosines; ++k) {
     const float cosine = static_cast<float>(k) / (BoundRest::kScaleCosines - 1);
-    first_chance_.push_back(lerp(chances.data(), EvenPosition(std::sqrt(cosine), FirstSampler::kRows)));
+    ends_[k][3] = lerp(chances.data(), EvenPosition(std::sqrt(cosine), FirstSampler::kRows));
   }
 }
 
@@ -216,50 +218,58 @@ void BoundTable::prepare_pairs() {
   for (int o = 0; o < kPairs; ++o)
     for (int i = 0; i < kPairs; ++i) {
       Color4& node = pairs_[static_cast<std::size_t>(o * kPairs + i)];
-      if (!scales_.empty()) node = factored->ratio(o, i);
+      if (has_scales_) node = factored->ratio(o, i);
       node[3] = rest_sampler_.density(o, i);
     }
 }
 
 // The chance first, and without a root: sample() waits for it.
 inline BoundTable::Viewer::Viewer(const BoundTable& table, const Vec3& wo)
-    : cosine(std::min(static_cast<float>(wo.z), 1.0f), BoundRest::kScaleCosines),
-      first_chance(lerp(table.first_chance_.data(), cosine)),
+    : end(lerp(table.ends_.data(),
+               EvenPosition(std::min(static_cast<float>(wo.z), 1.0f), BoundRest::kScaleCosines))),
       facets(table.facets_, wo),
       pairs(std::min(facets.root, 1.0f), kPairs),
       rows(std::min(facets.root, 1.0f), FirstSampler::kRows) {}
 
-inline Color4 BoundTable::factored_rest(const Viewer& viewer, const EvenPositions& light,
-                                        const Color4& ratio) const {
-  return lerp(scales_.data(), viewer.cosine) * lerp(scales_.data(), {light, 0}) * ratio;
-}
-
-[[gnu::always_inline]] inline BoundTable::Parts BoundTable::parts(const Viewer& viewer, const Vec3& wo,
-                                                                  const Vec3& wi) const {
-  const FacetPair pair(facets_, viewer.facets, wo, wi);
-  const EvenPositions light(
-      Color4{pair.cosine * kLastScale, pair.root * kLastPair, pair.half_cosine * kLastFilm, 0},
-      Color4{kLastScale, kLastPair, kLastFilm, 0});
-  const Color4* row = pairs_.data() + viewer.pairs.lower * kPairs;
-  const Color4 low = lerp(row, {light, 1}), high = lerp(row + kPairs, {light, 1});
-  const Color4 ratio = low + viewer.pairs.upper_weight * (high - low);
-
+// What eval_pdf() and sample() know of several lights of one viewer, all above the horizon.
+template <int kLights>
+[[gnu::always_inline]] inline std::array<BoundTable::Parts, kLights> BoundTable::parts(
+    const Viewer& viewer, const Vec3& wo, const std::array<Vec3, kLights>& wi) const {
   constexpr float kPerSolidAngle = static_cast<float>(kInvPi / 4);  // d(root) / d(cosine) / (2 pi)
-  const float rest_pdf = (1 - viewer.first_chance) * ratio[3] * kPerSolidAngle * pair.per_root;
-  const Color4 rest = !scales_.empty() ? factored_rest(viewer, light, ratio) : to_color4(this->rest(wo, wi));
-  if (smooth_) return {Color4{}, rest, rest_pdf};
-  float first_pdf = pair.pdf;
-  if (has_cells()) first_pdf *= first_sampler_.density(viewer.rows, facets_.u, viewer.facets, pair);
-  return {pair.lobe * lerp(film_.data(), {light, 2}), rest, rest_pdf + viewer.first_chance * first_pdf};
+  const FacetLights<kLights> lights(facets_, viewer.facets, wo, wi.data());
+  const Color4 one = {1, 1, 1, 1};
+  const EvenPositions at_end(kLastScale * lights.cosine, kLastScale * one),
+      at_pair(kLastPair * lights.root, kLastPair * one),
+      at_film(kLastFilm * lights.half_cosine, kLastFilm * one);
+  const float chance = viewer.first_chance();
+  const Color4 rest_pdf = (1 - chance) * kPerSolidAngle / lights.root,  // times the density over the root
+      first_pdf = chance * viewer.facets.pdf_per_d * lights.d;
+  const Ints4 cells = has_cells() ? FirstSampler::cells(facets_.u, viewer.facets, lights) : Ints4{};
+  const Color4* row = pairs_.data() + viewer.pairs.lower * kPairs;
+
+  std::array<Parts, kLights> result;
+#pragma GCC unroll 4
+  for (int k = 0; k < kLights; ++k) {
+    const Color4 low = lerp(row, {at_pair, k}), high = lerp(row + kPairs, {at_pair, k});
+    const Color4 ratio = low + viewer.pairs.upper_weight * (high - low);
+    Parts& parts = result[static_cast<std::size_t>(k)];
+    parts.rest = has_scales_ ? viewer.end * lerp(ends_.data(), {at_end, k}) * ratio
+                             : to_color4(rest(wo, wi[static_cast<std::size_t>(k)]));
+    parts.first = Color4{};
+    parts.pdf = ratio[3] * rest_pdf[k];
+    if (smooth_) continue;
+    parts.first = lights.lobe[k] * lerp(film_.data(), {at_film, k});
+    parts.pdf += first_pdf[k] * (has_cells() ? first_sampler_.density(viewer.rows, cells[k]) : 1);
+  }
+  return result;
 }
 
 BoundTable::Parts BoundTable::parts(const Vec3& wo, const Vec3& wi) const {
-  return parts(Viewer(*this, wo), wo, wi);
+  return parts<1>(Viewer(*this, wo), wo, {wi})[0];
 }
 
 EvalPdf BoundTable::eval_pdf(const Vec3& wo, const Vec3& wi) const {
-  const Parts at = parts(Viewer(*this, wo), wo, wi);
-  return {to_rgb(at.first + at.rest), at.pdf};
+  return parts<1>(Viewer(*this, wo), wo, {wi})[0].eval_pdf();
 }
 
 // Draws from FirstSampler's square, or evenly.
@@ -273,46 +283,61 @@ inline Vec3 BoundTable::draw_rest(int row, Rng& rng) const {
   return at_random_azimuth(root * root, rng);
 }
 
-// One number chooses the technique and, with what is left of it, the row.
+// One number, `lot`, has chosen the technique; what is left of it chooses the row.
+[[gnu::always_inline]] inline Vec3 BoundTable::draw(const Viewer& viewer, float lot, const Vec3& wo,
+                                                    Rng& rng) const {
+  const float chance = viewer.first_chance();
+  if (lot < chance)
+    return draw_first(viewer, viewer.rows.lower + (lot < chance * viewer.rows.upper_weight), wo, rng);
+  return draw_rest(viewer.pairs.lower + (lot - chance < (1 - chance) * viewer.pairs.upper_weight), rng);
+}
+
+BsdfSample BoundTable::mirrored(const Viewer& viewer, const Vec3& wo) const {
+  return {{-wo.x, -wo.y, wo.z}, film_reflectance(wo.z) / double{viewer.first_chance()}, true, 0};
+}
+
 std::optional<BsdfSample> BoundTable::sample(const Vec3& wo, Rng& rng) const {
   const Viewer viewer(*this, wo);
-  const float lot = uniform_float(rng), chance = viewer.first_chance;
-  Vec3 wi;
-  if (lot < chance) {
-    if (smooth_) return BsdfSample{{-wo.x, -wo.y, wo.z}, film_reflectance(wo.z) / double{chance}, true, 0};
-    wi = draw_first(viewer, viewer.rows.lower + (lot < chance * viewer.rows.upper_weight), wo, rng);
-  } else {
-    wi = draw_rest(viewer.pairs.lower + (lot - chance < (1 - chance) * viewer.pairs.upper_weight), rng);
-  }
+  const float lot = uniform_float(rng);
+  if (smooth_ && lot < viewer.first_chance()) return mirrored(viewer, wo);
+  const Vec3 wi = draw(viewer, lot, wo, rng);
   if (wi.z <= 0) return {};
-  const Parts at = parts(viewer, wo, wi);
-  if (at.pdf <= 0) return {};
-  return BsdfSample{wi, to_rgb(at.first + at.rest) * (wi.z / double{at.pdf}), false, double{at.pdf}};
+  return parts<1>(viewer, wo, {wi})[0].sample(wi);
+}
+
+EvalAndSample BoundTable::eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const {
+  const Viewer viewer(*this, wo);
+  const float lot = uniform_float(rng);
+  if (smooth_ && lot < viewer.first_chance())
+    return {parts<1>(viewer, wo, {wi})[0].eval_pdf(), mirrored(viewer, wo)};
+  const Vec3 drawn = draw(viewer, lot, wo, rng);
+  if (drawn.z <= 0) return {parts<1>(viewer, wo, {wi})[0].eval_pdf(), {}};
+  const auto both = parts<2>(viewer, wo, {wi, drawn});
+  return {both[0].eval_pdf(), both[1].sample(drawn)};
 }
 
 // parts() without what pdf needs, four lights at a time.
 void BoundTable::eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f) const {
-  if (scales_.empty()) {
+  if (!has_scales_) {
     for (std::size_t k = 0; k < wi.size(); ++k) f[k] = wi[k].z > 0 ? eval_pdf(wo, wi[k]).f : Rgb();
     return;
   }
   const Viewer viewer(*this, wo);
   std::array<Color4, kPairs + 1> ratios;  // of this viewer, with its scale
   const Color4* row = pairs_.data() + viewer.pairs.lower * kPairs;
-  const Color4 scale = lerp(scales_.data(), viewer.cosine);
   for (int i = 0; i < kPairs; ++i)
-    ratios[i] = scale * (row[i] + viewer.pairs.upper_weight * (row[i + kPairs] - row[i]));
+    ratios[i] = viewer.end * (row[i] + viewer.pairs.upper_weight * (row[i + kPairs] - row[i]));
   ratios[kPairs] = Color4{};
 
   const auto take_four = [&](const Vec3* four, Rgb* values) {
-    const FacetLights lights(facets_, viewer.facets, wo, four);
+    const FacetLights<4> lights(facets_, viewer.facets, wo, four);
     const Color4 one = {1, 1, 1, 1};
     const EvenPositions at_scale(kLastScale * lights.cosine, kLastScale * one),
         at_pair(kLastPair * lights.root, kLastPair * one),
         at_film(kLastFilm * lights.half_cosine, kLastFilm * one);
 #pragma GCC unroll 4
     for (int k = 0; k < 4; ++k) {
-      Color4 value = lerp(scales_.data(), {at_scale, k}) * lerp(ratios.data(), {at_pair, k});
+      Color4 value = lerp(ends_.data(), {at_scale, k}) * lerp(ratios.data(), {at_pair, k});
       if (!smooth_) value += lights.lobe[k] * lerp(film_.data(), {at_film, k});
       values[k] = lights.cosine[k] > 0 ? to_rgb(value) : Rgb();
     }

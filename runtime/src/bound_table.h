@@ -25,12 +25,19 @@ class BoundTable {
   struct Parts {
     Color4 first, rest;  // 1/sr
     float pdf;
+
+    EvalPdf eval_pdf() const { return {to_rgb(first + rest), double{pdf}}; }
+    std::optional<BsdfSample> sample(const Vec3& wi) const {
+      if (pdf <= 0) return {};
+      return BsdfSample{wi, to_rgb(first + rest) * (wi.z / double{pdf}), false, double{pdf}};
+    }
   };
   // All directions lie above the horizon, but for those of a span.
   Parts parts(const Vec3& wo, const Vec3& wi) const;
   EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi) const;
   void eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f) const;
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const;
+  EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const;
 
   Rgb rest(const Vec3& wo, const Vec3& wi) const;
   Rgb rest_stderr(const Vec3& wo, const Vec3& wi) const;
@@ -45,14 +52,18 @@ class BoundTable {
   struct Viewer {
     Viewer(const BoundTable& table, const Vec3& wo);
 
-    EvenPosition cosine;  // among scales and chances
-    float first_chance;
+    Color4 end;  // see ends_
     FacetViewer facets;
     EvenPosition pairs, rows;  // in pairs_ and of first_sampler_
+
+    float first_chance() const { return end[3]; }
   };
 
-  Parts parts(const Viewer& viewer, const Vec3& wo, const Vec3& wi) const;
-  Color4 factored_rest(const Viewer& viewer, const EvenPositions& light, const Color4& ratio) const;
+  template <int kLights>
+  std::array<Parts, kLights> parts(const Viewer& viewer, const Vec3& wo,
+                                   const std::array<Vec3, kLights>& wi) const;
+  Vec3 draw(const Viewer& viewer, float lot, const Vec3& wo, Rng& rng) const;
+  BsdfSample mirrored(const Viewer& viewer, const Vec3& wo) const;
   Vec3 draw_first(const Viewer& viewer, int row, const Vec3& wo, Rng& rng) const;
   Vec3 draw_rest(int row, Rng& rng) const;
 
@@ -81,14 +92,16 @@ class BoundTable {
   Facets facets_;
   bool smooth_;
   std::variant<std::monostate, DenseRest, BoundRest> rest_;
-  std::span<const Color4> scales_;  // of an isotropic factored rest, else empty
-  std::vector<Color4> film_;        // over even cosines
+  bool has_scales_ = false;  // an isotropic factored rest has
+  // Over even cosines, and one node more: that scale, and in the last lane the chance that sample() tries the
+  // first surface for a viewer there.
+  std::vector<Color4> ends_;
+  std::vector<Color4> film_;  // over even cosines
   // (root of the viewer's cosine, root of the light's), both even: the ratio of an isotropic factored rest,
   // and in the last lane RestSampler's density.
   std::vector<Color4> pairs_;
   RestSampler rest_sampler_;
-  FirstSampler first_sampler_;       // an isotropic rough film's
-  std::vector<float> first_chance_;  // over even cosines, as many as there are scales
+  FirstSampler first_sampler_;  // an isotropic rough film's
 };
 
 }  // namespace sunbeam

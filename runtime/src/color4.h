@@ -33,7 +33,7 @@ inline Color4 sqrt4(const Color4& x) {
 #endif
 }
 
-// The lesser of two numbers, four times; `b` where `a` is not a number.
+// The lesser and the greater of two numbers, four times; `b` where `a` is not a number.
 inline Color4 min4(const Color4& a, const Color4& b) {
 #ifdef __SSE2__
   return _mm_min_ps(a, b);
@@ -42,7 +42,17 @@ inline Color4 min4(const Color4& a, const Color4& b) {
 #endif
 }
 
+inline Color4 max4(const Color4& a, const Color4& b) {
+#ifdef __SSE2__
+  return _mm_max_ps(a, b);
+#else
+  return a > b ? a : b;
+#endif
+}
+
 inline Rgb to_rgb(const Color4& c) { return {c[0], c[1], c[2]}; }
+
+using Ints4 = int __attribute__((vector_size(16)));
 
 // Four of them, from coordinates >= 0 that count nodes; none goes beyond its `last`, whose place is the last
 // node with a weight of 0 for one more, which must exist.
@@ -52,7 +62,6 @@ struct EvenPositions {
     lower = __builtin_convertvector(inside, Ints4);
     upper_weight = inside - __builtin_convertvector(lower, Color4);
   }
-  using Ints4 = int __attribute__((vector_size(16)));
   Ints4 lower;
   Color4 upper_weight;
 };

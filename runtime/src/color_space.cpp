@@ -33,11 +33,6 @@ constexpr ColorMatrix kBradford = {
 
 }  // namespace
 
-Rgb ColorMatrix::operator*(const Rgb& c) const {
-  const Vec3 v = *this * Vec3{c.r, c.g, c.b};
-  return {v.x, v.y, v.z};
-}
-
 ColorMatrix ColorMatrix::operator*(const ColorMatrix& other) const {
   ColorMatrix product;
   for (int i = 0; i < 3; ++i)

@@ -17,11 +17,11 @@ namespace sunbeam {
 // In [0, 1), 24 random bits.
 inline float uniform_float(Rng& rng) { return static_cast<float>(rng.next() >> 8) * 0x1p-24f; }
 
-// A unit vector.
+// A unit vector. The floats' length is off by 1e-7, and its inverse by Newton's step from 1 by 1e-14.
 inline Vec3 at_random_azimuth(double cosine, Rng& rng) {
-  const FloatTurn phi(uniform_float(rng));
+  const FloatTurn phi(rng);
   const double x{phi.cosine}, y{phi.sine};
-  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine) / (x * x + y * y));
+  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) * (1.5 - 0.5 * (x * x + y * y));
   return {sine * x, sine * y, cosine};
 }
 
@@ -57,15 +57,14 @@ struct FacetViewer {
     bottom = quotients[1];
   }
 
-  // wo mirrored at a visible normal; fewer go below the horizon than with the whole cap. u.x turns from the
-  // azimuth of wo. Stretched to roughness 1, and there all lengths times r, normals lie between wo and a
-  // point of the cap, which is uniform in the square. Reflection itself keeps the length of wo to the last
-  // digit.
-  Vec3 mirrored(const Facets& facets, const Vec3& wo, float turn, float height) const {
+  // wo mirrored at a visible normal; fewer go below the horizon than with the whole cap. phi is turned from
+  // the azimuth of wo, height goes from the cap's top, 0, to its bottom, 1. Stretched to roughness 1, and
+  // there all lengths times r, normals lie between wo and a point of the cap, which is uniform in the square.
+  // Reflection itself keeps the length of wo to the last digit.
+  Vec3 mirrored(const Facets& facets, const Vec3& wo, const FloatTurn& phi, float height) const {
     const float below_top = height * (r + bottom), z = r - below_top;
     const bool is_vertical = sine2 == 0;
     const float ring = std::sqrt(std::max(below_top * (r + z), 0.0f)) / (is_vertical ? 1 : sine);
-    const FloatTurn phi(turn);
     const float along = is_vertical ? 1 : x, across = y;
     const Vec3 h{double{facets.u * (ring * (phi.cosine * along - phi.sine * across) + facets.u * x)},
                  double{facets.v * (ring * (phi.sine * along + phi.cosine * across) + facets.v * y)},
@@ -84,10 +83,9 @@ struct FacetViewer {
 // A pair of directions, both above the horizon.
 struct FacetPair {
   FacetPair(const Facets& facets, const FacetViewer& viewer, const Vec3& wo, const Vec3& wi)
-      : x(static_cast<float>(wo.x + wi.x)),
-        y(static_cast<float>(wo.y + wi.y)),
-        z(static_cast<float>(wo.z + wi.z)),
-        cosine(static_cast<float>(wi.z)) {
+      : cosine(static_cast<float>(wi.z)) {
+    const auto x = static_cast<float>(wo.x + wi.x), y = static_cast<float>(wo.y + wi.y),
+               z = static_cast<float>(wo.z + wi.z);
     const auto ix = static_cast<float>(wi.x), iy = static_cast<float>(wi.y);
     const float l2 = x * x + y * y + z * z;
     const Color4 roots =
@@ -96,48 +94,54 @@ struct FacetPair {
     half_cosine = 0.5f * roots[2];
     const float q = facets.u2v2 * z * z + facets.v2 * x * x + facets.u2 * y * y;
     const float to_lobe = 2 * (viewer.r * cosine + roots[1] * viewer.cosine);
-    const Color4 per = Color4{1, 1, 1, 1} / Color4{root, q, to_lobe, 1};
-    per_root = per[0];
-    l2_per_q = l2 * per[1];
-    const float d = facets.uv3_per_pi * l2_per_q * l2_per_q;
-    lobe = d * per[2];
+    const Color4 per = Color4{1, 1, 1, 1} / Color4{q, to_lobe, 1, 1};
+    const float l2_per_q = l2 * per[0], d = facets.uv3_per_pi * l2_per_q * l2_per_q;
+    lobe = d * per[1];
     pdf = d * viewer.pdf_per_d;
   }
 
-  float x, y, z;         // of h, not normalised
-  float cosine;          // of wi
-  float root, per_root;  // of that cosine, and 1 over it
-  float half_cosine;     // between either direction and h
-  float l2_per_q;
-  float lobe;  // without the reflectance, 1/sr
-  float pdf;   // of mirrored(), 1/sr
+  float cosine;       // of wi
+  float root;         // of that cosine
+  float half_cosine;  // between either direction and h
+  float lobe;         // without the reflectance, 1/sr
+  float pdf;          // of mirrored(), 1/sr
 };
 
-// The same for four lights, without pdf; those below the horizon mean nothing and have a cosine of 0.
+// The same for several lights of one viewer, a lane each; what is left of four repeats others. Lights below
+// the horizon mean nothing and have a cosine of 0.
+template <int kLights>
 struct FacetLights {
-  FacetLights(const Facets& facets, const FacetViewer& viewer, const Vec3& wo, const Vec3* wi) {
-    const Four x(wi, &Vec3::x, wo), y(wi, &Vec3::y, wo), z(wi, &Vec3::z, wo);
-    cosine = z.light > 0 ? z.light : Color4{};
-    root = sqrt4(cosine);
-    const Color4 x2 = x.half * x.half, y2 = y.half * y.half, z2 = z.half * z.half, l2 = x2 + y2 + z2;
-    half_cosine = 0.5f * sqrt4(l2);
-    const Color4 q = facets.u2v2 * z2 + facets.v2 * x2 + facets.u2 * y2, l2_per_q = l2 / q;
-    const Color4 r = sqrt4(z.light * z.light + facets.u2 * x.light * x.light + facets.v2 * y.light * y.light);
-    lobe = facets.uv3_per_pi * l2_per_q * l2_per_q / (2 * (viewer.r * cosine + r * viewer.cosine));
-  }
+  FacetLights(const Facets& facets, const FacetViewer& viewer, const Vec3& wo, const Vec3* wi)
+      : FacetLights(facets, viewer, {wi, &Vec3::x, wo}, {wi, &Vec3::y, wo}, {wi, &Vec3::z, wo}) {}
 
-  Color4 cosine, root, half_cosine, lobe;
+  Color4 x, y, z;  // of h, not normalised
+  Color4 cosine, root, half_cosine;
+  Color4 l2_per_q, d;
+  Color4 lobe;
 
  private:
-  // One coordinate of four lights and of their h.
-  struct Four {
-    Four(const Vec3* wi, double Vec3::*at, const Vec3& wo) {
-      const Doubles2 low{wi[0].*at, wi[1].*at}, high{wi[2].*at, wi[3].*at};
+  // One coordinate of the lights and of their h.
+  struct Coordinate {
+    Coordinate(const Vec3* wi, double Vec3::*at, const Vec3& wo) {
+      const Doubles2 low{wi[0].*at, wi[kLights > 1 ? 1 : 0].*at};
+      const Doubles2 high = kLights < 4 ? low : Doubles2{wi[kLights - 2].*at, wi[kLights - 1].*at};
       light = to_floats(low, high);
       half = to_floats(low + wo.*at, high + wo.*at);
     }
     Color4 light, half;
   };
+
+  FacetLights(const Facets& facets, const FacetViewer& viewer, const Coordinate& cx, const Coordinate& cy,
+              const Coordinate& cz)
+      : x(cx.half), y(cy.half), z(cz.half), cosine(cz.light > 0 ? cz.light : Color4{}), root(sqrt4(cosine)) {
+    const Color4 x2 = x * x, y2 = y * y, z2 = z * z, l2 = x2 + y2 + z2;
+    half_cosine = 0.5f * sqrt4(l2);
+    l2_per_q = l2 / (facets.u2v2 * z2 + facets.v2 * x2 + facets.u2 * y2);
+    const Color4 r =
+        sqrt4(cosine * cosine + facets.u2 * cx.light * cx.light + facets.v2 * cy.light * cy.light);
+    d = facets.uv3_per_pi * l2_per_q * l2_per_q;
+    lobe = d * (0.5f / (viewer.r * cosine + r * viewer.cosine));  // quotients need not wait for each other
+  }
 };
 
 }  // namespace sunbeam

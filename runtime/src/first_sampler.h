@@ -17,8 +17,9 @@ namespace sunbeam {
 
 class FirstSampler {
  public:
-  static constexpr int kRows = 33;
-  static constexpr int kTurns = 16, kHeights = 64, kCells = kTurns * kHeights;
+  static constexpr int kRows = 17;
+  static constexpr int kTurns = 16, kHeights = 32, kCells = kTurns * kHeights;
+  static_assert(2 * kTurns == FloatTurn::kSteps);
 
   FirstSampler() : density_(kCells * kStride) {}
 
@@ -30,58 +31,63 @@ class FirstSampler {
       density_[cell * kStride + rows_.size() - 1] = static_cast<float>(densities[cell]);
   }
 
+  // In the square.
   struct Point {
-    float turn, height;
+    FloatTurn turn;
+    float height;
   };
   static Point even(Rng& rng) {
-    const float turn = uniform_float(rng);
+    const FloatTurn turn(rng);
     return {turn, uniform_float(rng)};
   }
-  // In the square.
   Point sample(int row, Rng& rng) const {
-    const std::size_t cell = rows_[static_cast<std::size_t>(row)].draw(rng.next());
+    const std::uint32_t cell = rows_[static_cast<std::size_t>(row)].draw(rng.next());
     const std::uint32_t random = rng.next();  // its highest bit chooses the cell or its mirror image
-    const std::size_t turn = (cell / kHeights) ^ ((random >> 31) * (2 * kTurns - 1));
+    const std::uint32_t turn = (cell / kHeights) ^ ((random >> 31) * (2 * kTurns - 1));
     const float inside = static_cast<float>((random << 1) >> 8) * 0x1p-24f;
-    return {(static_cast<float>(turn) + inside) * (0.5f / kTurns),
+    return {FloatTurn(turn, inside),
             (static_cast<float>(cell % kHeights) + uniform_float(rng)) * (1.0f / kHeights)};
   }
 
-  // Density over the square of drawing the normal along h. Stretched to roughness 1 and times r (facets.h),
+  // The cells that the normals along h fall into. Stretched to roughness 1 and times r (facets.h),
   // with h' = (h.x, h.y, a h.z) the mirrored wo is m = e h' - wo', e = a l^2 / |h'|^2; its height is that of
   // m.z, and its azimuth has the cosine m.wo' / (|m| |wo'|) in the plane.
-  float density(const EvenPosition& row, float alpha, const FacetViewer& o, const FacetPair& pair) const {
-    const float e = alpha * alpha * alpha * pair.l2_per_q;
-    const float z = e * alpha * pair.z - o.cosine, below_top = o.r - z;
-    const float along = e * (pair.x * o.x + pair.y * o.y) - alpha * o.sine2;
-    const int turn = turn_at(along * std::abs(along), below_top * (o.r + z) * o.sine2);
-    const int level = std::clamp(static_cast<int>(below_top * (2 * kHeights) * o.pdf_per_d), 0, kHeights - 1);
-    const float* viewers = density_.data() + (turn * kHeights + level) * kStride + row.lower;
+  template <int kLights>
+  static Ints4 cells(float alpha, const FacetViewer& o, const FacetLights<kLights>& lights) {
+    const Color4 e = alpha * alpha * alpha * lights.l2_per_q;
+    const Color4 z = e * alpha * lights.z - o.cosine, below_top = o.r - z;
+    const Color4 along = e * (lights.x * o.x + lights.y * o.y) - alpha * o.sine2;
+    const Ints4 turn = turn_at(along, below_top * (o.r + z) * o.sine2);
+    const Color4 level = below_top * (2 * kHeights * o.pdf_per_d);
+    const Color4 last = Color4{1, 1, 1, 1} * float{kHeights - 1};
+    return turn * kHeights + __builtin_convertvector(max4(min4(level, last), Color4{}), Ints4);
+  }
+
+  // Over the square.
+  float density(const EvenPosition& row, int cell) const {
+    const float* viewers = density_.data() + static_cast<std::size_t>(cell) * kStride + row.lower;
     return viewers[0] + row.upper_weight * (viewers[1] - viewers[0]);
   }
 
  private:
   static constexpr std::size_t kStride = kRows + 1;
 
-  // The cosine falls along the half turn; squares keep its sign.
-  static int turn_at(float square, float length2) {
-    int turn = 0;
-    for (const float edge : kEdges) turn += square < edge * length2;
-    return turn;
+  // The half turn's cosine is x / sqrt(length2); one of its quarters is the other's mirror image.
+  static Ints4 turn_at(const Color4& x, const Color4& length2) {
+    Ints4 turn{};
+    for (const float edge : kEdges) turn -= x * x < edge * length2;
+    return turn ^ ((x < 0) & (kTurns - 1));
   }
-  static const std::array<float, kTurns> kEdges;  // signed square of cos(pi k / kTurns), k = 1 to kTurns
+  static const std::array<float, kTurns / 2 - 1> kEdges;  // squared cosine at pi k / kTurns, k = 1, 2 ...
 
   std::vector<AliasTable<kCells>> rows_;
   std::vector<float> density_;  // (cell, viewer), so that both viewers are neighbours
 };
 
-inline const std::array<float, FirstSampler::kTurns> FirstSampler::kEdges = [] {
-  std::array<float, kTurns> edges;
-  for (int k = 1; k < kTurns; ++k) {
-    const double cosine = std::cos(kPi * k / kTurns);
-    edges[static_cast<std::size_t>(k - 1)] = static_cast<float>(cosine * std::abs(cosine));
-  }
-  edges.back() = -2;  // never: it fills the register
+inline const std::array<float, FirstSampler::kTurns / 2 - 1> FirstSampler::kEdges = [] {
+  std::array<float, kTurns / 2 - 1> edges;
+  for (std::size_t k = 0; k < edges.size(); ++k)
+    edges[k] = static_cast<float>(square(std::cos(kPi * static_cast<double>(k + 1) / kTurns)));
   return edges;
 }();
 

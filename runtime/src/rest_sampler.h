@@ -14,7 +14,7 @@ namespace sunbeam {
 
 class RestSampler {
  public:
-  static constexpr int kNodes = 65;  // of viewers and of lights
+  static constexpr int kNodes = 33;  // of viewers and of lights
 
   // Root of the cosine of a node.
   static double root_of_node(int node) { return static_cast<double>(node) / kIntervals; }

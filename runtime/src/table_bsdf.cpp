@@ -65,6 +65,12 @@ EvalPdf TableBsdf::eval_pdf(const Vec3& wo, const Vec3& wi) const {
   return bound_->eval_pdf(wo, wi);
 }
 
+EvalAndSample TableBsdf::eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const {
+  if (wo.z <= 0) return {};
+  if (wi.z <= 0) return {{}, bound_->sample(wo, rng)};
+  return bound_->eval_and_sample(wo, wi, rng);
+}
+
 std::optional<BsdfSample> TableBsdf::sample(const Vec3& wo, Rng& rng) const {
   if (wo.z <= 0) return {};
   return bound_->sample(wo, rng);

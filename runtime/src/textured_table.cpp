@@ -264,7 +264,7 @@ inline std::optional<BsdfSample> TexturedTable::At::sample_for(const Viewer& vie
   Vec3 wi;
   if (rng.uniform() < chance) {
     if (data.smooth) return BsdfSample{{-wo.x, -wo.y, wo.z}, dirac(wo) / chance, true, 0};
-    const float turn = uniform_float(rng);
+    const FloatTurn turn(rng);
     wi = viewer.facets.mirrored(data.facets, wo, turn, uniform_float(rng));
   } else {
     wi = at_random_azimuth(rest_density_.sample(rng), rng);

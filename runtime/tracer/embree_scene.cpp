@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "runtime/tracer/huge_pages.h"
 #include "sunbeam/core/error.h"
 
 namespace sunbeam {
@@ -45,7 +46,7 @@ struct Surface {
   int object = -1, light = -1;
   double offset = 0;
   std::vector<Float3> positions = {};  // of the vertices, which Embree reads
-  std::vector<Triangle> triangles = {};
+  std::vector<Triangle, HugePages<Triangle>> triangles = {};
   std::vector<Vec3> tangents = {};  // of the triangles of a flat mesh, of the vertices of a smooth one
   bool has_coordinates = false;
   std::vector<UvDerivatives> derivatives = {};  // of the vertices of a mesh with coordinates
@@ -64,8 +65,9 @@ std::vector<Float3> positions_of(const Mesh& mesh) {
   return positions;
 }
 
-std::vector<Triangle> triangles_of(const Mesh& mesh, const std::vector<Float3>& positions) {
-  std::vector<Triangle> triangles(mesh.triangles.size());
+std::vector<Triangle, HugePages<Triangle>> triangles_of(const Mesh& mesh,
+                                                        const std::vector<Float3>& positions) {
+  std::vector<Triangle, HugePages<Triangle>> triangles(mesh.triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const auto [i, j, k] = mesh.triangles[t];
     const Vec3 a = to_double(positions[i]), b = to_double(positions[j]), c = to_double(positions[k]);

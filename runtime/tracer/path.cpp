@@ -107,7 +107,20 @@ inline Rgb PathTracer::emission(const Ray& ray, const MaybeHit& hit, std::option
   return sum;
 }
 
-inline Rgb PathTracer::direct_light(const Vertex& vertex, Rng& rng, PathCounts& counts) const {
+// A light sample that reaches the vertex.
+struct PathTracer::Lit {
+  LightSample light;
+  Vec3 wi;  // local
+  double shadowing;
+
+  Rgb reflected(const EvalPdf& at) const {
+    const double weight = light.is_dirac ? 1 : power_heuristic(light.pdf, at.pdf);
+    return at.f * light.radiance * (wi.z * weight * shadowing / light.pdf);
+  }
+};
+
+inline std::optional<PathTracer::Lit> PathTracer::sample_light(const Vertex& vertex, Rng& rng,
+                                                               PathCounts& counts) const {
   const auto light = lights_.sample(vertex.origin(), rng);
   if (!light || !vertex.is_above(light->wi)) return {};
   const Vec3 wi = vertex.frame.to_local(light->wi);
@@ -116,9 +129,7 @@ inline Rgb PathTracer::direct_light(const Vertex& vertex, Rng& rng, PathCounts& 
   if (shadowing == 0) return {};
   ++counts.rays;
   if (geometry_.occluded(vertex.leave(light->wi), light->distance)) return {};
-  const EvalPdf value = vertex.bsdf->eval_pdf(vertex.wo, wi, rng);
-  const double weight = light->is_dirac ? 1 : power_heuristic(light->pdf, value.pdf);
-  return value.f * light->radiance * (wi.z * weight * shadowing / light->pdf);
+  return Lit{*light, wi, shadowing};
 }
 
 Rgb PathTracer::radiance(Ray ray, Rng& rng, PathCounts& counts, FirstHit* first) const {
@@ -134,8 +145,10 @@ Rgb PathTracer::radiance(Ray ray, Rng& rng, PathCounts& counts, FirstHit* first)
     BsdfRoom room;
     const Vertex vertex = make_vertex(ray, *hit, room);
     if (first && bounce == 0) *first = vertex.as_first_hit(hit->distance);
-    result += throughput * direct_light(vertex, rng, counts);
-    const auto sample = vertex.bsdf->sample(vertex.wo, rng);
+    const auto lit = sample_light(vertex, rng, counts);
+    const auto [eval, sample] = lit ? vertex.bsdf->eval_and_sample(vertex.wo, lit->wi, rng)
+                                    : EvalAndSample{{}, vertex.bsdf->sample(vertex.wo, rng)};
+    if (lit) result += throughput * lit->reflected(eval);
     if (!sample) return result;
     throughput *= sample->throughput;
     if (first && bounce == 0) first->albedo = sample->throughput;

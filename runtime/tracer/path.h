@@ -37,10 +37,11 @@ class PathTracer {
 
  private:
   struct Vertex;
+  struct Lit;
   using MaybeHit = std::optional<SurfaceHit>;
 
   Rgb emission(const Ray& ray, const MaybeHit& hit, std::optional<double> bsdf_pdf) const;
-  Rgb direct_light(const Vertex& vertex, Rng& rng, PathCounts& counts) const;
+  std::optional<Lit> sample_light(const Vertex& vertex, Rng& rng, PathCounts& counts) const;
   Vertex make_vertex(const Ray& ray, const SurfaceHit& hit, BsdfRoom& room) const;
 
   const Scene& scene_;

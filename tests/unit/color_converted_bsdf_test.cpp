@@ -29,6 +29,18 @@ TEST(ColorConvertedBsdf, ConvertsValuesAndThroughputs) {
   }
 }
 
+TEST(ColorConvertedBsdf, ConvertsBothAtOnce) {
+  const auto bsdf = converted(Rgb(0.1, 0.8, 0.1));
+  Rng together(2, 0), apart(2, 0);
+  const auto [eval, sample] = bsdf.eval_and_sample(kOut, kIn, together);
+  const auto alone = bsdf.sample(kOut, apart);
+  ASSERT_TRUE(sample && alone);
+  EXPECT_EQ(eval.f, bsdf.eval(kOut, kIn, apart));
+  EXPECT_EQ(eval.pdf, bsdf.mis_pdf(kOut, kIn));
+  EXPECT_EQ(sample->throughput, alone->throughput);
+  EXPECT_EQ(sample->wi.x, alone->wi.x);
+}
+
 TEST(ColorConvertedBsdf, KeepsGreysAndDensities) {
   Rng rng(1, 0);
   const Lambert plain(Rgb(0.4));

@@ -25,6 +25,11 @@ struct EvalPdf {
   double pdf;  // 1/sr
 };
 
+struct EvalAndSample {
+  EvalPdf eval;
+  std::optional<BsdfSample> sample;
+};
+
 class Bsdf {
  public:
   virtual ~Bsdf() = default;
@@ -47,6 +52,12 @@ class Bsdf {
   // eval() and mis_pdf() together, where they share work at the price of one.
   virtual EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const {
     return {eval(wo, wi, rng), mis_pdf(wo, wi)};
+  }
+
+  // eval_pdf(wo, wi) and then sample(wo), where they share work at less than the price of both.
+  virtual EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const {
+    const EvalPdf value = eval_pdf(wo, wi, rng);
+    return {value, sample(wo, rng)};
   }
 
   // Whether turning wo and wi together about the normal changes nothing: any tangent serves.

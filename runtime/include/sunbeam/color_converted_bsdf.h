@@ -33,6 +33,12 @@ class ColorConvertedBsdf final : public Bsdf {
     const EvalPdf value = bsdf_.eval_pdf(wo, wi, rng);
     return {matrix_ * value.f, value.pdf};
   }
+  EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const override {
+    EvalAndSample both = bsdf_.eval_and_sample(wo, wi, rng);
+    both.eval.f = matrix_ * both.eval.f;
+    if (both.sample) both.sample->throughput = matrix_ * both.sample->throughput;
+    return both;
+  }
   bool is_isotropic() const override { return bsdf_.is_isotropic(); }
 
  private:

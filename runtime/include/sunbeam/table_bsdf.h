@@ -36,6 +36,8 @@ class TableBsdf final : public Bsdf {
   EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi) const;
   EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return eval_pdf(wo, wi); }
 
+  EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const override;
+
   // f of one viewer and many lights at a lower price each; f[k] belongs to wi[k], and there are as many.
   void eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f) const;
 

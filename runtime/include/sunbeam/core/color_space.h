@@ -28,7 +28,10 @@ struct ColorMatrix {
   Vec3 row[3];
 
   Vec3 operator*(const Vec3& v) const { return {dot(row[0], v), dot(row[1], v), dot(row[2], v)}; }
-  Rgb operator*(const Rgb& c) const;
+  Rgb operator*(const Rgb& c) const {
+    const Vec3 v = *this * Vec3{c.r, c.g, c.b};
+    return {v.x, v.y, v.z};
+  }
   ColorMatrix operator*(const ColorMatrix& other) const;
 };
 ColorMatrix inverse(const ColorMatrix& matrix);

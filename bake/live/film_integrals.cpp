@@ -212,7 +212,7 @@ FilmIntegrals::FilmIntegrals(const Material& material, const Rgb& wavelengths_nm
       resolution_(resolution),
       interface_(material, wavelengths_nm),
       film_(ThinFilm::of(material)),
-      film_below_(material.transmission == Transmission::straight ? film_ : film_.reversed()),
+      film_below_(ThinFilm::below(material)),
       wavelengths_nm_(wavelengths_nm),
       index_ratio_(interface_.has_glossy_crossing() ? material.exterior_ior / material.base_ior : 1),
       ggx_(material.roughness),

@@ -76,20 +76,25 @@ Parameters DenseNodes::parameters(std::size_t node) const {
   return {grid[0].nodes[node / (grid[1].size() * grid[2].size())], grid[1].nodes[b], grid[2].nodes[c]};
 }
 
-DenseNodes::Values DenseNodes::values(std::size_t node, std::vector<Row>& rows) const {
-  orbits_.average(rows);
-  if (outline_.frame == FrameKind::closed) frame(node, rows);
-  Values result;
-  for (const Row& row : rows)
-    for (std::size_t o = 0; o < wo_.size(); ++o) {
-      for (int c = 0; c < 3; ++c)
-        result.remainder.push_back(round_to(recipe_.table.precision, row.value[o][c]));
-      result.rest_stderr.push_back(round_to(Precision::single_float, coarse(mean(row.standard_error[o]))));
-    }
+std::vector<float> DenseNodes::remainder(std::size_t node, Rows rest) const {
+  orbits_.average(rest);
+  if (outline_.frame == FrameKind::closed) frame(node, rest);
+  std::vector<float> result;
+  for (const std::vector<Rgb>& row : rest)
+    for (const Rgb& value : row)
+      for (int c = 0; c < 3; ++c) result.push_back(round_to(recipe_.table.precision, value[c]));
   return result;
 }
 
-void DenseNodes::frame(std::size_t node, std::vector<Row>& rows) const {
+std::vector<float> DenseNodes::rest_stderr(Rows errors) const {
+  orbits_.average_errors(errors);
+  std::vector<float> result;
+  for (const std::vector<Rgb>& row : errors)
+    for (const Rgb& error : row) result.push_back(round_to(Precision::single_float, coarse(mean(error))));
+  return result;
+}
+
+void DenseNodes::frame(std::size_t node, Rows& rest) const {
   const Parameters p = parameters(node);
   const RestFrame frame = frame_->over(p.applied_to(recipe_.material));
   const auto transmittance = [&](double cosine) {
@@ -101,7 +106,7 @@ void DenseNodes::frame(std::size_t node, std::vector<Row>& rows) const {
   for (std::size_t i = 0; i < wi_.size(); ++i) {
     const Rgb t_i = transmittance(wi_[i].z);
     for (std::size_t o = 0; o < wo_.size(); ++o)
-      rows[i].value[o] = frame.encode(rows[i].value[o], wi_[i].z, wo_[o].z, t_i, t_o[o]);
+      rest[i][o] = frame.encode(rest[i][o], wi_[i].z, wo_[o].z, t_i, t_o[o]);
   }
 }
 

@@ -31,14 +31,12 @@ class DenseNodes {
   // Everything but `info` and the values of remainder and rest_stderr.
   const Table& outline() const { return outline_; }
 
-  // As the arrays hold them.
-  struct Values {
-    std::vector<float> remainder, rest_stderr;
-  };
-  Values values(std::size_t node, std::vector<Row>& rows) const;
+  // What the arrays hold of a node, from its rest and from the rest's standard error.
+  std::vector<float> remainder(std::size_t node, Rows rest) const;
+  std::vector<float> rest_stderr(Rows errors) const;
 
  private:
-  void frame(std::size_t node, std::vector<Row>& rows) const;
+  void frame(std::size_t node, Rows& rest) const;
 
   const Recipe& recipe_;
   Table outline_;

@@ -15,8 +15,27 @@ Orbits::Orbits(bool is_isotropic, std::size_t cosines, std::size_t azimuths)
   for (auto& [key, cells] : by_key) orbits_.push_back(std::move(cells));
 }
 
-void Orbits::average(std::vector<Row>& rows) const {
-  for (const Cells& cells : orbits_) average(rows, cells);
+void Orbits::average(Rows& values) const {
+  for (const Cells& cells : orbits_) {
+    Rgb sum;
+    for (const auto& [row, place] : cells) sum += values[row][place];
+    spread(sum / static_cast<double>(cells.size()), cells, values);
+  }
+}
+
+void Orbits::average_errors(Rows& errors) const {
+  for (const Cells& cells : orbits_) {
+    Rgb variance, row_error;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const auto [row, place] = cells[k];
+      row_error += errors[row][place];
+      if (k + 1 < cells.size() && cells[k + 1].first == row) continue;
+      variance += row_error * row_error;
+      row_error = {};
+    }
+    const Rgb error = transform(variance, [](double x) { return std::sqrt(x); });
+    spread(error / static_cast<double>(cells.size()), cells, errors);
+  }
 }
 
 std::size_t Orbits::number(const End& i, const End& o) const {
@@ -46,23 +65,8 @@ std::size_t Orbits::key(End i, End o) const {
   return least;
 }
 
-// Cells of a row share their walks, so their errors add up; those of different rows do not.
-void Orbits::average(std::vector<Row>& rows, const Cells& cells) {
-  Rgb value, variance, row_error;
-  for (std::size_t k = 0; k < cells.size(); ++k) {
-    const auto [row, place] = cells[k];
-    value += rows[row].value[place];
-    row_error += rows[row].standard_error[place];
-    if (k + 1 < cells.size() && cells[k + 1].first == row) continue;
-    variance += row_error * row_error;
-    row_error = {};
-  }
-  const auto count = static_cast<double>(cells.size());
-  const Rgb error = transform(variance, [](double x) { return std::sqrt(x); });
-  for (const auto& [row, place] : cells) {
-    rows[row].value[place] = value / count;
-    rows[row].standard_error[place] = error / count;
-  }
+void Orbits::spread(const Rgb& mean, const Cells& cells, Rows& rows) {
+  for (const auto& [row, place] : cells) rows[row][place] = mean;
 }
 
 }  // namespace sunbeam

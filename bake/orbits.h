@@ -11,10 +11,8 @@
 
 namespace sunbeam {
 
-// Rest and its standard error, 1/sr, for one wi and every wo of the table.
-struct Row {
-  std::vector<Rgb> value, standard_error;
-};
+// One number a cell: for each wi, those of every wo of the table. The rest or its standard error, 1/sr.
+using Rows = std::vector<std::vector<Rgb>>;
 
 class Orbits {
  public:
@@ -22,7 +20,10 @@ class Orbits {
   Orbits(bool is_isotropic, std::size_t cosines, std::size_t azimuths);
 
   // Replaces the values of each orbit by their mean: less noise, and symmetries hold to the last bit.
-  void average(std::vector<Row>& rows) const;
+  void average(Rows& values) const;
+  // The standard errors of these means. Cells of a row share their walks, so their errors add up; those of
+  // different rows do not.
+  void average_errors(Rows& errors) const;
 
  private:
   using Cells = std::vector<std::pair<std::size_t, std::size_t>>;  // (row, place in it), by row
@@ -33,7 +34,7 @@ class Orbits {
 
   std::size_t number(const End& i, const End& o) const;
   std::size_t key(End i, End o) const;
-  static void average(std::vector<Row>& rows, const Cells& cells);
+  static void spread(const Rgb& mean, const Cells& cells, Rows& rows);
 
   bool is_isotropic_;
   std::size_t cosines_, azimuths_;

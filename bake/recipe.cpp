@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "bake/factor_walks.h"
+#include "bake/factor_axes.h"
 #include "runtime/config/config.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/file.h"

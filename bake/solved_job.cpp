@@ -101,13 +101,12 @@ class SolvedJob : public BakeJob {
     std::vector<Rgb> values(films_->cells());
     for (std::size_t absorption = 0; absorption < order_.absorptions; ++absorption) {
       films_->rest(task % order_.thicknesses, absorption, values);
-      std::vector<Row> rows(nodes_.wi().size());
-      for (std::size_t i = 0; i < rows.size(); ++i) {
+      Rows rest;
+      for (std::size_t i = 0; i < nodes_.wi().size(); ++i) {
         const auto from = values.begin() + static_cast<std::ptrdiff_t>(i * places);
-        rows[i].value.assign(from, from + static_cast<std::ptrdiff_t>(places));
-        rows[i].standard_error.resize(places);
+        rest.emplace_back(from, from + static_cast<std::ptrdiff_t>(places));
       }
-      add(nodes_.values(first + absorption, rows).remainder, block.values);
+      add(nodes_.remainder(first + absorption, std::move(rest)), block.values);
     }
     return block;
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "bake/dense_nodes.h"
+#include "bake/factor_axes.h"
 #include "bake/factor_walks.h"
 #include "bake/film_tables.h"
 #include "bake/run_tasks.h"

@@ -1,5 +1,8 @@
 #include "bake/walked_job.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "bake/cell.h"
 #include "bake/dense_nodes.h"
 #include "bake/live/pfmc.h"
@@ -32,8 +35,8 @@ class RowWalks {
       if (std::all_of(cells.begin(), cells.end(), is_known)) break;
     }
     for (const Cell& cell : cells) {
-      row_.value.push_back(cell.mean_of(estimates));
-      row_.standard_error.push_back(cell.standard_error(estimates));
+      values_.push_back(cell.mean_of(estimates));
+      errors_.push_back(cell.standard_error(estimates));
       worst_ = std::max(worst_, cell.relative_error(estimates));
     }
     walks_ += static_cast<std::uint64_t>(estimates) * model_.walks_per_estimate();
@@ -41,8 +44,8 @@ class RowWalks {
 
   Block block() const {
     Block block{{walks_, worst_}, {}};
-    append(block.values, std::span(row_.value));
-    append(block.values, std::span(row_.standard_error));
+    append(block.values, std::span(values_));
+    append(block.values, std::span(errors_));
     return block;
   }
 
@@ -52,7 +55,7 @@ class RowWalks {
   Vec3 wi_;
   double noise_;
   Rng rng_;
-  Row row_;
+  std::vector<Rgb> values_, errors_;
   double worst_ = 0;
   std::uint64_t walks_ = 0;
 };
@@ -62,30 +65,32 @@ class WalkedCells : public DenseCells {
   WalkedCells(const DenseNodes& nodes, const Blocks& blocks) : nodes_(nodes), blocks_(blocks) {}
 
   std::vector<float> remainder(std::size_t first, std::size_t count) const override {
-    return collect(first, count, &DenseNodes::Values::remainder);
+    std::vector<float> result;
+    for (std::size_t node = first; node < first + count; ++node)
+      std::ranges::copy(nodes_.remainder(node, rows(node, kRest)), std::back_inserter(result));
+    return result;
   }
   std::vector<float> rest_stderr(std::size_t first, std::size_t count) const override {
-    return collect(first, count, &DenseNodes::Values::rest_stderr);
-  }
-
- private:
-  std::vector<float> collect(std::size_t first, std::size_t count,
-                             std::vector<float> DenseNodes::Values::*array) const {
     std::vector<float> result;
-    for (std::size_t node = first; node < first + count; ++node) {
-      std::vector<Row> rows;
-      for (std::size_t i = 0; i < nodes_.wi().size(); ++i) rows.push_back(row(node, i));
-      const auto values = nodes_.values(node, rows);
-      result.insert(result.end(), (values.*array).begin(), (values.*array).end());
-    }
+    for (std::size_t node = first; node < first + count; ++node)
+      std::ranges::copy(nodes_.rest_stderr(rows(node, kError)), std::back_inserter(result));
     return result;
   }
 
-  Row row(std::size_t node, std::size_t i) const {
+ private:
+  // The halves of a block.
+  enum Half : std::size_t { kRest, kError };
+
+  // Of all blocks of a node.
+  Rows rows(std::size_t node, Half half) const {
     const std::size_t places = nodes_.wo().size();
-    const auto both = unpacked<Rgb>(blocks_.values(node * nodes_.wi().size() + i), 2 * places);
-    const auto middle = both.begin() + static_cast<std::ptrdiff_t>(places);
-    return {{both.begin(), middle}, {middle, both.end()}};
+    Rows result;
+    for (std::size_t i = 0; i < nodes_.wi().size(); ++i) {
+      const auto both = unpacked<Rgb>(blocks_.values(node * nodes_.wi().size() + i), 2 * places);
+      const auto from = both.begin() + static_cast<std::ptrdiff_t>(half * places);
+      result.emplace_back(from, from + static_cast<std::ptrdiff_t>(places));
+    }
+    return result;
   }
 
   const DenseNodes& nodes_;

@@ -2,6 +2,8 @@
 
 #include <span>
 
+#include "bake/live/visible_normals.h"
+
 namespace sunbeam {
 namespace {
 
@@ -9,8 +11,6 @@ namespace {
 // still has more than two nodes a period.
 constexpr int kFineNodes = 20;
 constexpr double kPhaseStep = 5;
-// Share of the anisotropy that azimuths of the normal leave out.
-constexpr double kTurnsError = 1e-8;
 // Extra nodes a radian of phase for normals visible from one direction, and where they end (time, not error).
 constexpr double kVisibleNodesPerRadian = 0.3;
 constexpr int kMaxVisibleNodes = 400;
@@ -31,177 +31,6 @@ void for_each_node(std::span<const double> edges, const GaussRule& rule, F visit
   }
 }
 
-// Cosine of total reflection; 0 if there is none.
-double critical_cosine(double ior_from, double ior_to) {
-  return std::sqrt(std::max(0.0, 1 - square(ior_to / ior_from)));
-}
-
-// As seen from the film's exterior.
-double critical_cosine(const ThinFilm& film) { return critical_cosine(film.exterior_ior, film.base_ior); }
-
-// A cone of normals k: where the symmetric bilinear form of k with itself vanishes.
-struct Conic {
-  Vec3 w;
-  double cone, ratio;  // one of them is 0
-
-  // w.k = cone |k|, or |(k.x, k.y) w.z - k.z (w.x, w.y)| = k.z / ratio.
-  double operator()(const Vec3& a, const Vec3& b) const {
-    if (cone > 0) return dot(a, b) - dot(w, a) * dot(w, b) / square(cone);
-    const auto x = [&](const Vec3& k) { return k.x * w.z - k.z * w.x; };
-    const auto y = [&](const Vec3& k) { return k.y * w.z - k.z * w.y; };
-    return x(a) * x(b) + y(a) * y(b) - a.z * b.z / square(ratio);
-  }
-};
-
-// The normals visible from w, by stretching the surface to roughness 1, where their density over half the
-// angle between w and its mirror image is uniform (Heitz 2018): polar angle about the stretched w, azimuth
-// from the horizon nearest to it. A normal is k / |k|, k = k0 + k1(azimuth) tan(polar), and conics cross the
-// normals where what the light does changes abruptly:
-//   cones      w.k = c |k|: total reflection at the base, and at the film where light tunnels beyond it;
-//   rim        m.z = 0 for light refracted to k ~ ratio w - m, ratio = n0 / n2 > 1. In slopes k.x / k.z and
-//              k.y / k.z a circle about w. Only its arc with m.k > 0 is real; the rest costs a few nodes and
-//              no error.
-// Along k each is a quadratic in tan(polar). If the film is isotropic, azimuths in [0, pi] stand for all.
-class VisibleNormals {
- public:
-  VisibleNormals(const Vec3& w, const Roughness& roughness, const ThinFilm& film, double ratio)
-      : w_(w), roughness_(roughness), ratio_(ratio), axis_(normalize(stretched(w))) {
-    const double sine = std::hypot(axis_.x, axis_.y);
-    const double x = sine > 0 ? axis_.x / sine : 1, y = sine > 0 ? axis_.y / sine : 0;
-    forward_ = {axis_.z * x, axis_.z * y, -sine};
-    sideways_ = {-y, x, 0};
-    const double base = critical_cosine(film.exterior_ior, film.base_ior);
-    const double inside = critical_cosine(film.exterior_ior, film.film_ior);
-    if (base > 0) conics_.push_back({w, base, 0});
-    if (inside > base) conics_.push_back({w, inside, 0});  // else the base reflects all there
-    if (ratio * sine_of_w() > 1) conics_.push_back({w, 0, ratio});
-  }
-
-  Vec3 normal(double polar, double azimuth) const {
-    const Vec3 k = std::cos(polar) * k0() + std::sin(polar) * k1(azimuth);
-    return normalize({k.x, k.y, std::max(0.0, k.z)});
-  }
-
-  // Over polar angle and azimuth, between the first and the last of azimuth_edges().
-  double density(double polar) const {
-    return (is_halved() ? 2 : 1) * std::sin(2 * polar) / (kPi * (1 + axis_.z));
-  }
-
-  // Azimuths between which the bounds of polar_edges() are smooth: the horizon is met between -pi / 2 and
-  // pi / 2; a conic is touched by two, and two go through where it leaves the horizon or its arc ends.
-  std::vector<double> azimuth_edges() const {
-    std::vector<double> edges{0, kPi / 2, kPi};
-    const auto add = [&](double azimuth) {
-      if (!is_halved() || (azimuth > 0 && azimuth < kPi)) edges.push_back(azimuth);
-    };
-    add(-kPi / 2);
-    add(-kPi);
-    for (const Conic& conic : conics_) {
-      for (const double azimuth : tangents(conic)) add(azimuth);
-      for (const double azimuth : ends(conic)) add(azimuth);
-    }
-    std::sort(edges.begin(), edges.end());
-    return edges;
-  }
-
-  // 0, where the conics begin and end, the horizon; ascending.
-  std::array<double, 8> polar_edges(double azimuth) const {
-    const double end = std::atan2(axis_.z, std::max(0.0, -forward_.z * std::cos(azimuth)));
-    std::array<double, 8> edges{0, end};
-    const Vec3 a = k0(), b = k1(azimuth);
-    int count = 2;
-    for (const Conic& conic : conics_) {
-      cut({conic(a, a), conic(a, b), conic(b, b)}, end, &edges[count]);
-      count += 2;
-    }
-    std::sort(edges.begin(), edges.end());
-    return edges;
-  }
-
-  // Up to where w is mirrored above the horizon: a convex set of normals, which holds the axis and no rim.
-  double mirrored_end(double azimuth, double end) const {
-    double low = 0, high = end;
-    for (int step = 0; step < 40; ++step) {
-      const double middle = (low + high) / 2;
-      (reflect(w_, normal(middle, azimuth)).z > 0 ? low : high) = middle;
-    }
-    return low;
-  }
-
- private:
-  // c + 2 b t + a t^2, t = tan(polar).
-  struct Quadratic {
-    double c, b, a;
-  };
-
-  bool is_halved() const { return roughness_.is_isotropic(); }
-  double sine_of_w() const { return std::hypot(w_.x, w_.y); }
-  Vec3 stretched(const Vec3& a) const { return {roughness_.u * a.x, roughness_.v * a.y, a.z}; }
-  Vec3 k0() const { return stretched(axis_); }
-  Vec3 k1(double azimuth) const {
-    return stretched(std::cos(azimuth) * forward_ + std::sin(azimuth) * sideways_);
-  }
-  double azimuth_of(const Vec3& k) const {
-    const Vec3 a{k.x / roughness_.u, k.y / roughness_.v, k.z};
-    return std::atan2(dot(a, sideways_), dot(a, forward_));
-  }
-
-  // The two roots as polar angles inside [0, end]; twice the nearest to one if there is none.
-  static void cut(const Quadratic& q, double end, double* edges) {
-    const auto polar = [&](double tangent) { return tangent > 0 ? std::min(std::atan(tangent), end) : 0; };
-    const double root = std::sqrt(std::max(0.0, square(q.b) - q.a * q.c));
-    const double larger = -(q.b + std::copysign(root, q.b));
-    edges[0] = polar(larger / q.a);
-    edges[1] = root > 0 ? polar(q.c / larger) : edges[0];
-  }
-
-  // Where the discriminant of the quadratic, itself a quadratic form of (cos, sin) of the azimuth, vanishes
-  // and the double root is ahead.
-  std::vector<double> tangents(const Conic& conic) const {
-    const Vec3 a = k0(), p = stretched(forward_), q = stretched(sideways_);
-    const double aa = conic(a, a), ap = conic(a, p), aq = conic(a, q);
-    const double pp = ap * ap - aa * conic(p, p), pq = ap * aq - aa * conic(p, q),
-                 qq = aq * aq - aa * conic(q, q);
-    const double middle = (pp + qq) / 2, swing = std::hypot((pp - qq) / 2, pq);
-    if (swing <= std::abs(middle)) return {};
-    const double centre = std::atan2(pq, (pp - qq) / 2), spread = std::acos(-middle / swing);
-    std::vector<double> azimuths;
-    for (const double twice : {centre - spread, centre + spread})
-      for (const double turn : {0.0, kPi}) {
-        const double azimuth = std::remainder(twice / 2 + turn, 2 * kPi);
-        const Vec3 b = k1(azimuth);
-        if (conic(a, b) * conic(b, b) < 0) azimuths.push_back(azimuth);
-      }
-    return azimuths;
-  }
-
-  // A cone leaves the horizon at two azimuths; the arc of the rim ends on the cone of total reflection,
-  // ratio w.m = 1.
-  std::vector<double> ends(const Conic& conic) const {
-    const double cosine = conic.cone > 0 ? conic.cone / sine_of_w() : 1 / (ratio_ * sine_of_w());
-    if (cosine >= 1) return {};
-    std::vector<double> azimuths;
-    for (const double sign : {-1.0, 1.0}) {
-      const double turn = std::atan2(w_.y, w_.x) + sign * std::acos(cosine);
-      const Vec3 flat{std::cos(turn), std::sin(turn), 0};
-      azimuths.push_back(azimuth_of(conic.cone > 0 ? flat : ratio_ * w_ - flat));
-    }
-    return azimuths;
-  }
-
-  Vec3 w_;
-  Roughness roughness_;
-  double ratio_;
-  Vec3 axis_, forward_, sideways_;  // of the stretched space: w, towards the horizon, along the horizon
-  std::vector<Conic> conics_;
-};
-
-// How many even azimuths average functions of GGX's slopes, whose Fourier modes shrink by (v - u) / (v + u).
-int turns_of(const Roughness& roughness) {
-  const double shrink = std::abs(roughness.u - roughness.v) / (roughness.u + roughness.v);
-  return shrink == 0 ? 1 : 2 + static_cast<int>(std::log(kTurnsError) / std::log(shrink));
-}
-
 double min_component(const Rgb& a) { return std::min({a.r, a.g, a.b}); }
 
 }  // namespace
@@ -212,20 +41,17 @@ FilmIntegrals::FilmIntegrals(const Material& material, const Rgb& wavelengths_nm
       resolution_(resolution),
       interface_(material, wavelengths_nm),
       film_(ThinFilm::of(material)),
-      film_below_(material.transmission == Transmission::straight ? film_ : film_.reversed()),
+      film_below_(ThinFilm::below(material)),
       wavelengths_nm_(wavelengths_nm),
       index_ratio_(interface_.has_glossy_crossing() ? material.exterior_ior / material.base_ior : 1),
-      ggx_(material.roughness),
       basis_(resolution.per_panel),
       cosine_panel_(resolution.cosines),
       fine_(gauss_legendre(kFineNodes)),
       normals_(gauss_legendre(resolution.normals)),
       azimuths_(gauss_legendre(resolution.azimuths)),
       visible_(gauss_legendre(visible_nodes())),
-      visible_azimuths_(gauss_legendre(visible_nodes() * 3 / 4)) {
-  const int count = turns_of(material.roughness);
-  for (int k = 0; k < count; ++k) turns_.push_back(kPi * k / count);
-}
+      visible_azimuths_(gauss_legendre(visible_nodes() * 3 / 4)),
+      turns_(material.roughness) {}
 
 // Phase difference of neighbouring reflections, radians, at the shortest wavelength.
 double FilmIntegrals::phase(const ThinFilm& film, double cosine) const {
@@ -309,50 +135,19 @@ std::vector<Rgb> FilmIntegrals::moments(Event event, double low, double high) co
   return result;
 }
 
-// Lambda of a direction turned to azimuths about the macro normal along with the facet it meets:
-//   2 tan^2 (u^2 cos^2 + v^2 sin^2) = tan^2 (u^2 + v^2) + (u^2 - v^2) (tan^2 cos(2 phi)).
-struct TurnedLambda {
-  double even, cosine, sine;
-
-  TurnedLambda(const Roughness& r, const Vec3& w) {
-    const double per = 0.5 / square(w.z), difference = (square(r.u) - square(r.v)) * per;
-    even = 1 + (square(r.u) + square(r.v)) * per * (square(w.x) + square(w.y));
-    cosine = difference * (square(w.x) - square(w.y));
-    sine = -2 * difference * w.x * w.y;
-  }
-  double at(double cos_twice, double sin_twice) const {
-    return (std::sqrt(even + cosine * cos_twice + sine * sin_twice) - 1) / 2;
-  }
-};
-
-// Over all turns of the facet, D(h) and masking of a direction and its partner. By the definition of the
-// model: shadowing none for "straight", Walter's for light that bends, its limit between.
-double FilmIntegrals::shadowed(Event event, const std::vector<Turn>& turns, const Vec3& w,
+// By the definition of the model: shadowing none for "straight", Walter's for light that bends, its limit
+// between.
+double FilmIntegrals::shadowed(Event event, const std::vector<FacetTurns::Turn>& turns, const Vec3& w,
                                const Vec3& partner) const {
   const bool alone = event == Event::passage && material_.transmission == Transmission::straight;
-  const TurnedLambda here(material_.roughness, w), there(material_.roughness, partner);
-  double sum = 0;
-  for (const Turn& turn : turns) {
-    const double other = alone ? 0 : there.at(turn.cos_twice, turn.sin_twice);
-    sum += turn.density / (1 + here.at(turn.cos_twice, turn.sin_twice) + other);
-  }
-  return sum;
-}
-
-// Facets tilted by `theta`, at all azimuths: D(h) of each.
-std::vector<FilmIntegrals::Turn> FilmIntegrals::turns_at(double theta) const {
-  std::vector<Turn> turns;
-  for (const double azimuth : turns_)
-    turns.push_back({std::cos(2 * azimuth), std::sin(2 * azimuth),
-                     ggx_.d(spherical_direction(theta, azimuth)) / static_cast<double>(turns_.size())});
-  return turns;
+  return turns_.masked(turns, w, alone ? nullptr : &partner);
 }
 
 // Int over the azimuth about a facet tilted by `theta` of a direction at `cosine` with its normal, inside the
 // azimuths where the direction and its partner are above the horizon.
 template <class F>
-void FilmIntegrals::visit_azimuths(Event event, double theta, const std::vector<Turn>& turns, double cosine,
-                                   const Rgb& weight, F visit) const {
+void FilmIntegrals::visit_azimuths(Event event, double theta, const std::vector<FacetTurns::Turn>& turns,
+                                   double cosine, const Rgb& weight, F visit) const {
   const bool mirrored = event == Event::reflection_below;
   const double sin_h = std::sin(theta), cos_h = std::cos(theta), sine = std::sqrt(1 - square(cosine));
   const double partner_sine = mirrored ? -sine : index_ratio_ * sine;
@@ -389,7 +184,7 @@ void FilmIntegrals::visit_facets(Event event, F visit) const {
     const double theta = std::atan2(alpha * x, 1 - x);
     const double dtheta = alpha / (square(1 - x) + square(alpha * x)) * normals_.weight[i];
     const double normal_weight = 2 * kPi * std::sin(theta) * dtheta;
-    const std::vector<Turn> turns = turns_at(theta);
+    const auto turns = turns_.at(theta);
     // Below sin(theta_h) part of the azimuths is under the horizon.
     std::array<double, 7> edges{0, 0.25, 0.5, 0.75, 1, std::sin(theta), critical};
     std::sort(edges.begin(), edges.end());

@@ -11,6 +11,7 @@
 
 #include "bake/live/cosine_basis.h"
 #include "bake/live/dense.h"
+#include "bake/live/facet_turns.h"
 #include "bake/live/film_interface.h"
 
 namespace sunbeam {
@@ -62,10 +63,6 @@ class FilmIntegrals {
     double cosine, partner;
     Rgb weight;
   };
-  // One azimuth of a facet's normal: of twice the angle, and D(h) over their number.
-  struct Turn {
-    double cos_twice, sin_twice, density;
-  };
   enum class Event { reflection_below, passage };
 
   const ThinFilm& film_of(Event event) const { return event == Event::passage ? film_ : film_below_; }
@@ -79,10 +76,10 @@ class FilmIntegrals {
   template <class F>
   void visit_facets(Event event, F visit) const;
   template <class F>
-  void visit_azimuths(Event event, double theta, const std::vector<Turn>& turns, double cosine,
+  void visit_azimuths(Event event, double theta, const std::vector<FacetTurns::Turn>& turns, double cosine,
                       const Rgb& weight, F visit) const;
-  std::vector<Turn> turns_at(double theta) const;
-  double shadowed(Event event, const std::vector<Turn>& turns, const Vec3& w, const Vec3& partner) const;
+  double shadowed(Event event, const std::vector<FacetTurns::Turn>& turns, const Vec3& w,
+                  const Vec3& partner) const;
   double wider() const { return std::max(material_.roughness.u, material_.roughness.v); }
 
   Material material_;
@@ -91,11 +88,10 @@ class FilmIntegrals {
   ThinFilm film_, film_below_;
   Rgb wavelengths_nm_;
   double index_ratio_;  // n0 / n2 if facets bend light, else 1
-  Ggx ggx_;
   CosineBasis basis_;
   GaussInterpolation cosine_panel_;
   GaussRule fine_, normals_, azimuths_, visible_, visible_azimuths_;
-  std::vector<double> turns_;  // azimuths of normals, even over half a turn; one if the film is isotropic
+  FacetTurns turns_;
 };
 
 }  // namespace sunbeam

@@ -16,15 +16,13 @@ std::optional<Vec3> refract(const Vec3& w, const Vec3& h, double index_ratio) {
 
 FilmInterface::FilmInterface(const Material& material, const Rgb& wavelengths_nm)
     : film_(ThinFilm::of(material)),
-      film_below_(film_),
+      film_below_(ThinFilm::below(material)),
       wavelengths_nm_(wavelengths_nm),
       index_ratio_(bending_index_ratio(material)),
       rough_(!material.is_smooth()),
       bends_(index_ratio_ != 1),
       straight_(material.transmission == Transmission::straight),
-      ggx_(material.roughness) {
-  if (!straight_) film_below_ = film_.reversed();
-}
+      ggx_(material.roughness) {}
 
 Rgb FilmInterface::first_surface(const Vec3& wo, const Vec3& wi) const {
   if (!rough_ || wo.z <= 0 || wi.z <= 0) return {};

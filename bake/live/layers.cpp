@@ -95,7 +95,7 @@ class BelowFilm {
 
 Layers::Layers(const Material& material, const Wavelengths& wavelengths)
     : film(ThinFilm::of(material)),
-      film_below(film),
+      film_below(ThinFilm::below(material)),
       phases(phases_of(material, wavelengths)),
       alpha(material.roughness.u),
       index_ratio(bending_index_ratio(material)),
@@ -109,7 +109,6 @@ Layers::Layers(const Material& material, const Wavelengths& wavelengths)
       guide({}),
       open_guide({}),
       worth_below(1) {
-  if (!straight) film_below = FilmSide(ThinFilm::of(material).reversed());
   for (int j = 0; j < count; ++j) {
     albedo[j] = wavelengths.albedo[j];
     tau[j] = material.optical_depth() * wavelengths.absorption[j];

@@ -24,6 +24,10 @@ struct ThinFilm {
   static ThinFilm of(const Material& m) {
     return {m.exterior_ior, m.film_ior, m.base_ior, m.film_thickness_nm};
   }
+  // As light below meets it; in "straight" mode as light outside does.
+  static ThinFilm below(const Material& m) {
+    return m.transmission == Transmission::straight ? of(m) : of(m).reversed();
+  }
   ThinFilm reversed() const { return {base_ior, film_ior, exterior_ior, thickness_nm}; }
 };
 

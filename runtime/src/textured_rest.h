@@ -4,11 +4,10 @@
 #include <array>
 #include <vector>
 
-#include "even_axis.h"
 #include "exp4.h"
 #include "sunbeam/film_spectrum.h"
-#include "sunbeam/table.h"
 #include "sunbeam/textured_point.h"
+#include "textured_grid.h"
 
 namespace sunbeam {
 
@@ -16,10 +15,8 @@ class TexturedRest {
  public:
   explicit TexturedRest(const Table& table);
 
-  static constexpr int kCosines = 13;  // even roots
-
   // Isotropic and of path "sum": L says all, whatever the azimuth.
-  bool is_plain() const { return phis_ == 1 && pairs_.empty(); }
+  bool is_plain() const { return grid_.phis == 1 && pairs_.empty(); }
   bool is_product() const { return !pairs_.empty(); }
 
   TexturedPlace place(const Parameters& at) const;
@@ -30,8 +27,8 @@ class TexturedRest {
   };
   // `path` is the root of TexturedMaterial::path_squared, `root` that of the cosine.
   Direction direction(const TexturedPlace& place, float path, float root) const {
-    const float x = (place.thickness_nm * path - first_path_) * per_extent_;
-    return {{std::max(x, 0.0f), paths_}, {root, kCosines}};
+    const float x = (place.thickness_nm * path - grid_.first_path) * grid_.per_extent;
+    return {{std::max(x, 0.0f), grid_.paths}, {root, TexturedGrid::kCosines}};
   }
 
   // L; the last lane is the chance of sampling the first surface, interpolated too.
@@ -52,11 +49,11 @@ class TexturedRest {
 
   // The same of an anisotropic film; `phi` is the azimuth folded into a quadrant, over pi/2.
   Color4 at(const TexturedPlace& place, const Direction& w, float phi) const {
-    if (phis_ == 1) return at(place, w);
-    const EvenPosition azimuth(phi, phis_);
+    if (grid_.phis == 1) return at(place, w);
+    const EvenPosition azimuth(phi, grid_.phis);
     TexturedPlace lower = place, upper = place;
-    lower.row += static_cast<std::size_t>(azimuth.lower * kCosines);
-    upper.row = lower.row + kCosines;
+    lower.row += static_cast<std::size_t>(azimuth.lower * TexturedGrid::kCosines);
+    upper.row = lower.row + TexturedGrid::kCosines;
     const Color4 low = at(lower, w);
     return low + azimuth.upper_weight * (at(upper, w) - low);
   }
@@ -92,13 +89,12 @@ class TexturedRest {
 
   const FilmSpectrum& film() const { return film_; }
   const Color4& absorption() const { return absorption_; }
-  const EvenAxis& axis(std::size_t k) const { return axes_[k]; }
+  const TexturedGrid& grid() const { return grid_; }
+  const EvenAxis& axis(std::size_t k) const { return grid_.axes[k]; }
   std::size_t bytes() const { return (nodes_.size() + pairs_.size()) * sizeof(Color4); }
 
  private:
   static constexpr float kLeastPassing = 1e-4f;
-
-  class Builder;
 
   // Neighbours of a direction among those of pairs_, and their weights.
   struct PairTaps {
@@ -107,30 +103,29 @@ class TexturedRest {
     int count;
   };
   PairTaps taps(const PairEnd& end) const;
-  int pair_ends() const { return pair_cosines_ * pair_phis_; }
+
+  void find_nodes(const Table& table);
 
   // At the first path and cosine.
   std::size_t row(int base_ior, int absorption) const {
-    return static_cast<std::size_t>((base_ior * axes_[2].size() + absorption) * phis_ * kCosines);
+    return static_cast<std::size_t>((base_ior * grid_.axes[2].size() + absorption) * grid_.columns());
   }
-  double path_nm(int node) const {
-    return per_extent_ > 0 ? first_path_ + node / ((paths_ - 1) * double{per_extent_}) : double{first_path_};
+  // Of X at a node of the parameters.
+  std::size_t first_pair(int thickness, int base_ior, int absorption) const {
+    const int node = (thickness * grid_.axes[1].size() + base_ior) * grid_.axes[2].size() + absorption;
+    return static_cast<std::size_t>(node) * static_cast<std::size_t>(grid_.pair_ends() * grid_.pair_ends());
   }
 
+  TexturedGrid grid_;
   FilmSpectrum film_;
-  std::array<EvenAxis, 3> axes_;  // of the parameters, in the order of kParameterNames
-  int phis_;                      // even azimuths in a quadrant; 1 for an isotropic film
-  int paths_;
-  float first_path_, per_extent_ = 0;  // nodes are even in thickness times path
-  int stride_;                         // from path to path, in nodes
-  std::array<int, 4> corner_;          // distance of a place's rows from the first
-  FloatRgb total_;                     // the fold of 1
-  Color4 absorption_;                  // a of each channel, and their mean
-  std::vector<Color4> nodes_;          // (path, base_ior, absorption_per_nm, phi, root of the cosine)
+  int stride_;                 // from path to path, in nodes
+  std::array<int, 4> corner_;  // distance of a place's rows from the first
+  FloatRgb total_;             // the fold of 1
+  Color4 absorption_;          // a of each channel, and their mean
+  std::vector<Color4> nodes_;  // (path, base_ior, absorption_per_nm, phi, root of the cosine)
   // Path "product" only: (film_thickness_nm, base_ior, absorption_per_nm, direction, direction), directions
   // as (phi, root of the cosine).
   std::vector<Color4> pairs_;
-  int pair_cosines_ = 0, pair_phis_ = 0;
 };
 
 }  // namespace sunbeam

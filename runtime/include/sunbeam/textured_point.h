@@ -10,14 +10,17 @@
 
 namespace sunbeam {
 
+// The path of light between reflections in a rough film, over that at normal incidence; 1 for a smooth one,
+// whose fringes are not in L.
+double textured_path(const Material& material, double cosine);
+
 // What of L's frame and place one table has for all points. Cosines are squared here.
 struct TexturedMaterial {
   explicit TexturedMaterial(const Material& material);
 
   // c~^2.
   float film_cosine_squared(float c) const { return film_scale * c * c + film_offset; }
-  // The path of light between reflections in a rough film, over that at normal incidence, as fringe_order()
-  // in factors.h has it; 1 for a smooth one.
+  // textured_path(), as fringe_order() in factors.h has it.
   float path_squared(float c) const { return std::max(path_scale * c * c + path_offset, least_path); }
 
   // How the transmittance falls towards grazing, after Schlick: enough to take its pole from L.

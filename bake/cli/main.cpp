@@ -236,7 +236,7 @@ void add_texture(CLI::App& app, TextureOptions& o, int& exit_code) {
   command->add_option("-o,--output", o.output, "Heights to write: .exr (float) or .png (16 bits)")
       ->required();
   command->add_option("--pattern", o.pattern, "Grid of the scales")
-      ->check(CLI::IsMember({"hexagonal", "voronoi"}));
+      ->check(CLI::IsMember({"hexagonal", "voronoi", "snake", "snake_head"}));
   command->add_option("--columns", o.columns, "Scales across the tile")
       ->check(whole_number(1, kMaxScaleColumns));
   command->add_option("--rows", o.rows, "Rows of scales in the tile, an even number")

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "runtime/tracer/snake_scales.h"
 #include "sunbeam/core/rng.h"
 
 namespace sunbeam {
@@ -111,23 +112,92 @@ class HardDisks {
 
 double dome(double t) { return t >= 1 ? 1 : 1 - square(1 - std::max(t, 0.0)); }
 
-double cell_height(const PeriodicBins& bins, const Point2& place, double edge) {
-  constexpr double kReach = 2.25;  // beyond, no border is nearer than half a scale width
-  double nearest2 = 1e300;
-  std::size_t own = 0;
-  Point2 center;
-  bins.for_near(place, kReach, [&](std::size_t i, const Point2& at) {
-    if (const double d2 = length2(at - place); d2 < nearest2) nearest2 = d2, own = i, center = at;
-  });
-  double height = 1;
-  bins.for_near(place, kReach, [&](std::size_t i, const Point2& at) {
-    const double separation2 = length2(at - center);
-    if (i == own && separation2 < 1e-12) return;
-    const double to_border = (length2(at - place) - nearest2) / (2 * std::sqrt(separation2));
-    height *= dome(to_border / edge);
-  });
-  return height;
+std::vector<ScaleSite> sites_of(const ScaleLayout& layout) {
+  switch (layout.pattern) {
+    case ScalePattern::snake_body:
+      return snake_body_sites(layout.columns, layout.rows);
+    case ScalePattern::snake_head:
+      return snake_head_sites(layout.columns, layout.rows);
+    default: {
+      std::vector<ScaleSite> sites;
+      for (const Point2& center : scale_centers(layout)) sites.push_back({center});
+      return sites;
+    }
+  }
 }
+
+std::vector<Point2> centers_of(const std::vector<ScaleSite>& sites) {
+  std::vector<Point2> centers;
+  for (const ScaleSite& site : sites) centers.push_back(site.center);
+  return centers;
+}
+
+// Heights over the cells of sites that repeat with a tile.
+class Cells {
+ public:
+  // No border between a place and a site beyond `reach` is nearer than half a scale width.
+  Cells(std::vector<ScaleSite> sites, const Point2& size, double reach)
+      : sites_(std::move(sites)), centers_(centers_of(sites_)), bins_(centers_, size), reach_(reach) {}
+  Cells(const Cells&) = delete;
+  Cells& operator=(const Cells&) = delete;
+
+  double height(const Point2& place, double edge) const {
+    const Near own = nearest(place);
+    borders_.clear();
+    bins_.for_near(place, reach_, [&](std::size_t i, const Point2& at) {
+      const Point2 scale = at - sites_[i].in_scale;
+      if (length2(scale - own.scale) < 1e-12) return;
+      const Point2 point = nearest_point(i, at, place);
+      const double behind = length2(point - place) - sites_[i].weight - own.distance;
+      const double twice = 2 * std::sqrt(length2(point - own.point));
+      if (behind < edge * twice) add_border(scale, behind / twice / edge);
+    });
+    double height = 1;
+    for (const Border& border : borders_) height *= dome(border.distance);
+    return height;
+  }
+
+ private:
+  struct Near {
+    double distance = 1e300;  // squared, less the weight
+    Point2 point, scale;
+  };
+  struct Border {
+    Point2 scale;  // that lies beyond
+    double distance;
+  };
+
+  Point2 nearest_point(std::size_t i, const Point2& at, const Point2& place) const {
+    const double half = sites_[i].half_length;
+    return {at.x + std::clamp(place.x - at.x, -half, half), at.y};
+  }
+
+  Near nearest(const Point2& place) const {
+    Near best;
+    bins_.for_near(place, reach_, [&](std::size_t i, const Point2& at) {
+      const Point2 point = nearest_point(i, at, place);
+      const double distance = length2(point - place) - sites_[i].weight;
+      if (distance < best.distance) best = {distance, point, at - sites_[i].in_scale};
+    });
+    return best;
+  }
+
+  // A scale of many sites has one border: the nearest.
+  void add_border(const Point2& scale, double distance) const {
+    for (Border& border : borders_)
+      if (length2(border.scale - scale) < 1e-12) {
+        border.distance = std::min(border.distance, distance);
+        return;
+      }
+    borders_.push_back({scale, distance});
+  }
+
+  std::vector<ScaleSite> sites_;
+  std::vector<Point2> centers_;
+  PeriodicBins bins_;
+  double reach_;
+  mutable std::vector<Border> borders_;  // of the place at hand, kept for its memory
+};
 
 }  // namespace
 
@@ -149,15 +219,17 @@ std::vector<Point2> scale_centers(const ScaleLayout& layout) {
 
 HeightMap scale_height_map(const ScaleLayout& layout, double edge, int pixels_per_scale) {
   const Point2 size = tile_size(layout);
-  const std::vector<Point2> centers = scale_centers(layout);
-  const PeriodicBins bins(centers, size);
+  constexpr double kReach = 2.25, kReachOfShields = 0.105;  // the latter of the girth
+  const bool is_head = layout.pattern == ScalePattern::snake_head;
+  const Cells cells(sites_of(layout), size,
+                    is_head ? std::max(kReach, kReachOfShields * layout.columns) : kReach);
   HeightMap map{static_cast<int>(std::lround(size.x * pixels_per_scale)),
                 static_cast<int>(std::lround(size.y * pixels_per_scale)),
                 {}};
   for (int row = 0; row < map.height; ++row)
     for (int column = 0; column < map.width; ++column) {
       const Point2 place = {size.x * (column + 0.5) / map.width, size.y * (1 - (row + 0.5) / map.height)};
-      map.values.push_back(static_cast<float>(cell_height(bins, place, edge)));
+      map.values.push_back(static_cast<float>(cells.height(place, edge)));
     }
   return map;
 }

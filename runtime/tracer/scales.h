@@ -12,12 +12,17 @@
 
 namespace sunbeam {
 
+// grid: all cells alike, as `jitter` says. Those of a snake (snake_scales.h) take the tile for the whole
+// girth.
+enum class ScalePattern { grid, snake_body, snake_head };
+
 struct ScaleLayout {
   int columns = 1;  // 1 to kMaxScaleColumns
   int rows = 2;     // even, 2 to kMaxScaleColumns
   // 0: the hexagonal grid. Above: blue noise, no two centres nearer than 1 - 0.3 jitter. Up to 1.
   double jitter = 0;
   std::uint64_t seed = 1;  // of the blue noise
+  ScalePattern pattern = ScalePattern::grid;
 };
 inline constexpr int kMaxScaleColumns = 512;
 

@@ -150,8 +150,9 @@ std::vector<ScaleSite> snake_body_sites(int columns, int rows) {
 std::vector<ScaleSite> snake_head_sites(int columns, int rows) {
   std::vector<ScaleSite> sites = shield_sites(columns, rows * kRowSpacing);
   const std::vector<ScaleSite> shields = sites;
+  const double last_row = (rows - 1) * kRowSpacing;  // stays, for the body begins beyond it
   for (const ScaleSite& scale : snake_body_sites(columns, rows))
-    if (!is_covered(scale, shields, columns)) sites.push_back(scale);
+    if (scale.center.y > last_row || !is_covered(scale, shields, columns)) sites.push_back(scale);
   return sites;
 }
 

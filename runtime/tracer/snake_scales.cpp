@@ -57,8 +57,8 @@ constexpr Shield kShields[] = {
     {0.06, 0.74, 0.06},
     {0.165, 0.775, 0.05},
     // frontal, supraoculars, before the eye, the eye, behind it
-    {0, 0.635, 0.055},
-    {0.082, 0.635, 0.04},
+    {0, 0.63, 0.058},
+    {0.083, 0.635, 0.04},
     {0.16, 0.695, 0.034},
     {0.14, 0.625, 0.034},
     {0.135, 0.56, 0.032},
@@ -124,11 +124,13 @@ std::vector<ScaleSite> shield_sites(int columns, double height) {
 
 double radius_of(const ScaleSite& shield) { return std::sqrt(shield.weight + square(kScaleRadius)); }
 
+// By a shield, or within a gap between shields so narrow that the scale would be a sliver.
 bool is_covered(const ScaleSite& scale, const std::vector<ScaleSite>& shields, int columns) {
+  const double gap = std::max(1.5 * kScaleRadius, 0.021 * columns);
   return std::any_of(shields.begin(), shields.end(), [&](const ScaleSite& shield) {
     const double across = std::abs(scale.center.x - shield.center.x);
     const double distance = std::hypot(std::min(across, columns - across), scale.center.y - shield.center.y);
-    return distance < radius_of(shield) + 1.3 * kScaleRadius;
+    return distance < radius_of(shield) + gap;
   });
 }
 

@@ -20,11 +20,12 @@ struct ScaleSite {
 
 inline constexpr int kMinSnakeColumns = 12, kMaxSnakeColumns = 400;
 
-// Both for a tile of `columns` by `rows` * sqrt(3)/2 that is the whole girth wide; `rows` is even. A scute
-// for every two rows of hexagons.
+// Both for a tile `columns` wide, the whole girth, and `rows` * sqrt(3)/2 high; rows is even. One scute for
+// every two rows of hexagons.
 std::vector<ScaleSite> snake_body_sites(int columns, int rows);
-// One unit of v, from the nape at y = 0. Shields from behind the eyes to the snout, which is where
-// snake_mesh() has it; below and beyond, the scales of the body, so that it continues the body's and repeats.
+// One unit of v, from the nape at y = 0. Shields from behind the head's widest place to the snout, where
+// make_snake() has them; around them the scales of the body, so that the tile continues the body's and
+// repeats.
 std::vector<ScaleSite> snake_head_sites(int columns, int rows);
 
 }  // namespace sunbeam

@@ -1,5 +1,6 @@
 #include "runtime/tracer/scales.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -141,49 +142,45 @@ class Cells {
   Cells(const Cells&) = delete;
   Cells& operator=(const Cells&) = delete;
 
-  double height(const Point2& place, double edge) const {
-    const Near own = nearest(place);
+  double height(const Point2& place, double edge) {
+    find_near(place);
+    const Near own = *std::min_element(near_.begin(), near_.end(),
+                                       [](auto& a, auto& b) { return a.distance < b.distance; });
     borders_.clear();
-    bins_.for_near(place, reach_, [&](std::size_t i, const Point2& at) {
-      const Point2 scale = at - sites_[i].in_scale;
-      if (length2(scale - own.scale) < 1e-12) return;
-      const Point2 point = nearest_point(i, at, place);
-      const double behind = length2(point - place) - sites_[i].weight - own.distance;
-      const double twice = 2 * std::sqrt(length2(point - own.point));
-      if (behind < edge * twice) add_border(scale, behind / twice / edge);
-    });
+    for (const Near& other : near_) {
+      if (length2(other.scale - own.scale) < 1e-12) continue;
+      const double behind = other.distance - own.distance;
+      const double twice = 2 * std::sqrt(length2(other.point - own.point));
+      if (behind < edge * twice) add_border(other.scale, behind / twice / edge);
+    }
     double height = 1;
     for (const Border& border : borders_) height *= dome(border.distance);
     return height;
   }
 
  private:
+  // Of a site: its point nearest to the place, which scale it belongs to, the distance squared less the
+  // weight.
   struct Near {
-    double distance = 1e300;  // squared, less the weight
     Point2 point, scale;
+    double distance;
   };
   struct Border {
     Point2 scale;  // that lies beyond
     double distance;
   };
 
-  Point2 nearest_point(std::size_t i, const Point2& at, const Point2& place) const {
-    const double half = sites_[i].half_length;
-    return {at.x + std::clamp(place.x - at.x, -half, half), at.y};
-  }
-
-  Near nearest(const Point2& place) const {
-    Near best;
+  void find_near(const Point2& place) {
+    near_.clear();
     bins_.for_near(place, reach_, [&](std::size_t i, const Point2& at) {
-      const Point2 point = nearest_point(i, at, place);
-      const double distance = length2(point - place) - sites_[i].weight;
-      if (distance < best.distance) best = {distance, point, at - sites_[i].in_scale};
+      const ScaleSite& site = sites_[i];
+      const Point2 point = {at.x + std::clamp(place.x - at.x, -site.half_length, site.half_length), at.y};
+      near_.push_back({point, at - site.in_scale, length2(point - place) - site.weight});
     });
-    return best;
   }
 
   // A scale of many sites has one border: the nearest.
-  void add_border(const Point2& scale, double distance) const {
+  void add_border(const Point2& scale, double distance) {
     for (Border& border : borders_)
       if (length2(border.scale - scale) < 1e-12) {
         border.distance = std::min(border.distance, distance);
@@ -196,7 +193,8 @@ class Cells {
   std::vector<Point2> centers_;
   PeriodicBins bins_;
   double reach_;
-  mutable std::vector<Border> borders_;  // of the place at hand, kept for its memory
+  std::vector<Near> near_;  // these two: of the place at hand, kept for their memory
+  std::vector<Border> borders_;
 };
 
 }  // namespace
@@ -221,13 +219,18 @@ HeightMap scale_height_map(const ScaleLayout& layout, double edge, int pixels_pe
   const Point2 size = tile_size(layout);
   constexpr double kReach = 2.25, kReachOfShields = 0.105;  // the latter of the girth
   const bool is_head = layout.pattern == ScalePattern::snake_head;
-  const Cells cells(sites_of(layout), size,
-                    is_head ? std::max(kReach, kReachOfShields * layout.columns) : kReach);
+  Cells cells(sites_of(layout), size, is_head ? std::max(kReach, kReachOfShields * layout.columns) : kReach);
   HeightMap map{static_cast<int>(std::lround(size.x * pixels_per_scale)),
                 static_cast<int>(std::lround(size.y * pixels_per_scale)),
                 {}};
+  const bool is_snake = layout.pattern != ScalePattern::grid;  // its sides are alike
   for (int row = 0; row < map.height; ++row)
     for (int column = 0; column < map.width; ++column) {
+      const int mirrored = map.width - 1 - column;
+      if (is_snake && mirrored < column) {
+        map.values.push_back(map.at(mirrored, row));
+        continue;
+      }
       const Point2 place = {size.x * (column + 0.5) / map.width, size.y * (1 - (row + 0.5) / map.height)};
       map.values.push_back(static_cast<float>(cells.height(place, edge)));
     }

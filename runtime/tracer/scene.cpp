@@ -220,16 +220,16 @@ int even_rows(double rows) { return 2 * static_cast<int>(std::lround(rows / 2));
 
 // Whole rows of scutes to a unit of v, so that body and head meet where v is 0.
 Relief read_snake_scales(const ConfigTable& table) {
-  constexpr int kHeadMapPixels = 640;  // the shields are large
+  constexpr int kBodyPixels = 1024, kHeadPixels = 640;  // around; the shields are large
   const int around = table.integer("around", kMinSnakeColumns, kMaxSnakeColumns);
   const double edge = read_edge(table);
   const ScaleLayout body{.columns = around, .pattern = ScalePattern::snake_body};
   const ScaleLayout head{
       .columns = around, .rows = even_rows(regular_rows(around)), .pattern = ScalePattern::snake_head};
-  return {.map = scale_map(body, edge, kMapPixels),
+  return {.map = scale_map(body, edge, kBodyPixels),
           .tiles = {1, static_cast<double>(head.rows) / body.rows},
           .height = read_scale_height(table) / around,
-          .head = scale_map(head, edge, kHeadMapPixels)};
+          .head = scale_map(head, edge, kHeadPixels)};
 }
 
 // Scales by number: `around` of them to a unit of u and `rows` rows to a unit of v.

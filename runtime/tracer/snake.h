@@ -14,9 +14,9 @@ struct SnakeShape {
 // About the z axis, on the plane z = 0, looking along -y. Both parts are closed; winding and unit normals
 // point outwards. u runs once around the body, from the middle of the belly over the right side to the back
 // (u = 1/2), and starts again there. v runs from the tip of the tail to the snout, and a step along the body
-// changes it by its length over the girth: a unit of v is as long as one of u everywhere, so that scales are
-// not stretched; their number around the body stays. v = 0 is the nape: the body has v < 0, the head 0 <= v
-// < 1. The eyes are two spheres sunk into the head. Each has one (u, v) only, and so no scales.
+// changes it by its length over the girth: a unit of v is as long as one of u but at both ends, so that
+// scales are not stretched; their number around the body stays. v = 0 is the nape: the body has v < 0, the
+// head 0 <= v < 1. The eyes are two spheres sunk into the head. Each has one (u, v) only, and so no scales.
 struct Snake {
   Mesh skin, eyes;
 };

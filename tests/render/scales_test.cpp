@@ -193,12 +193,9 @@ TEST(SnakeScales, HeightsAreThoseOfAllCopiesOfAllScales) {
   }
 }
 
-TEST(SnakeScales, BothSidesAreAlikeAndHeightsSpanZeroToOne) {
+TEST(SnakeScales, HeightsSpanZeroToOne) {
   for (const ScaleLayout& layout : {kBody, kHead}) {
     const HeightMap map = scale_height_map(layout, 0.35, 16);
-    for (int row = 0; row < map.height; ++row)
-      for (int column = 0; column < map.width; ++column)
-        ASSERT_NEAR(map.at(column, row), map.at(map.width - 1 - column, row), 1e-5) << column << ' ' << row;
     const auto [low, high] = std::minmax_element(map.values.begin(), map.values.end());
     EXPECT_GE(*low, 0);
     EXPECT_LT(*low, 0.1);

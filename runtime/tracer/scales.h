@@ -1,8 +1,8 @@
-// Scales as a height map that repeats without a seam: cells of a regular hexagonal grid, or Voronoi cells of
-// a blue-noise point set.
+// Scales as a height map that repeats without a seam: cells of a regular hexagonal grid, Voronoi cells of a
+// blue-noise point set, or the scales of a snake.
 //
 // Lengths here are in scale widths: the distance of neighbouring centres of the hexagonal grid. A tile is
-// `columns` wide and `rows` * sqrt(3)/2 high and holds columns * rows cells, whatever the layout.
+// `columns` wide and `rows` * sqrt(3)/2 high; a grid or blue noise has columns * rows cells in it.
 #pragma once
 
 #include <cstdint>

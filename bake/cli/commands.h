@@ -94,7 +94,7 @@ int run_compare(const CompareOptions& options);
 
 struct TextureOptions {
   std::string output;
-  std::string pattern = "hexagonal";  // or voronoi
+  std::string pattern = "hexagonal";  // or voronoi, snake, snake_head
   int columns = 8, rows = 10;         // of scales in the tile
   double edge = 0.35, jitter = 1;
   int pixels_per_scale = 64;

@@ -235,8 +235,8 @@ void add_texture(CLI::App& app, TextureOptions& o, int& exit_code) {
                                   "sunbeam texture -o scales.exr --pattern voronoi --columns 24 --rows 28");
   command->add_option("-o,--output", o.output, "Heights to write: .exr (float) or .png (16 bits)")
       ->required();
-  command->add_option("--pattern", o.pattern, "Grid of the scales")
-      ->check(CLI::IsMember({"hexagonal", "voronoi"}));
+  command->add_option("--pattern", o.pattern, "Grid of the scales; snake, snake_head: over a whole girth")
+      ->check(CLI::IsMember({"hexagonal", "voronoi", "snake", "snake_head"}));
   command->add_option("--columns", o.columns, "Scales across the tile")
       ->check(whole_number(1, kMaxScaleColumns));
   command->add_option("--rows", o.rows, "Rows of scales in the tile, an even number")

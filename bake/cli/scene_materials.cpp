@@ -10,6 +10,7 @@
 #include "bake/live/live_bsdf.h"
 #include "sunbeam/color_converted_bsdf.h"
 #include "sunbeam/core/error.h"
+#include "sunbeam/gloss.h"
 #include "sunbeam/lambert.h"
 #include "sunbeam/table_bsdf.h"
 #include "sunbeam/table_vdb.h"
@@ -89,6 +90,10 @@ SceneMaterials::SceneMaterials(Scene& scene, const std::string& scene_path, cons
   for (SceneMaterial& skin : scene.materials) {
     if (skin.type == SceneMaterial::Type::diffuse) {
       add(std::make_unique<Lambert>(skin.albedo));
+      continue;
+    }
+    if (skin.type == SceneMaterial::Type::gloss) {
+      add(std::make_unique<Gloss>(skin.ior, skin.roughness));
       continue;
     }
     if (mode == "diffuse") {

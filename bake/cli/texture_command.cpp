@@ -3,6 +3,7 @@
 #include "bake/cli/commands.h"
 #include "runtime/tracer/height_map.h"
 #include "runtime/tracer/scales.h"
+#include "runtime/tracer/snake_scales.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/file.h"
 
@@ -17,8 +18,14 @@ ScaleLayout layout_of(const TextureOptions& options) {
     throw Error(fmt::format("--jitter: found {:g}; allowed: 0 to 1", options.jitter));
   if (!(options.edge >= 0.02 && options.edge <= 0.5))
     throw Error(fmt::format("--edge: found {:g}; allowed: 0.02 to 0.5", options.edge));
-  const bool is_voronoi = options.pattern == "voronoi";
-  return {options.columns, options.rows, is_voronoi ? options.jitter : 0, options.seed};
+  const bool is_voronoi = options.pattern == "voronoi", is_snake = options.pattern.starts_with("snake");
+  if (is_snake && (options.columns < kMinSnakeColumns || options.columns > kMaxSnakeColumns))
+    throw Error(fmt::format("--columns: found {}; allowed for the pattern of a snake: {} to {}",
+                            options.columns, kMinSnakeColumns, kMaxSnakeColumns));
+  return {options.columns, options.rows, is_voronoi ? options.jitter : 0, options.seed,
+          options.pattern == "snake"        ? ScalePattern::snake_body
+          : options.pattern == "snake_head" ? ScalePattern::snake_head
+                                            : ScalePattern::grid};
 }
 
 void require_size(const TextureOptions& options, const Point2& tile) {
@@ -39,8 +46,8 @@ int run_texture(const TextureOptions& options) {
   const HeightMap map = scale_height_map(layout, options.edge, options.pixels_per_scale);
   write_height_map(options.output, map);
   const Point2 size = tile_size(layout);
-  fmt::print(stderr, "{}: {} x {} pixels, {:g} x {:.4f} scale widths, {} scales\n", options.output, map.width,
-             map.height, size.x, size.y, layout.columns * layout.rows);
+  fmt::print(stderr, "{}: {} x {} pixels, {:g} x {:.4f} scale widths\n", options.output, map.width,
+             map.height, size.x, size.y);
   return 0;
 }
 

@@ -10,10 +10,13 @@ Vec3 relief_normal(const Relief& relief, const Point2& uv, const Vec3& normal,
   const double area = dot(normal, cross(du, dv));
   const double size2 = dot(du, du), other2 = dot(dv, dv);
   if (!(square(area) > 1e-8 * size2 * other2)) return normal;
-  const Point2 slope = relief.map->sample({uv.x * relief.tiles.x, uv.y * relief.tiles.y}).gradient;
+  const bool is_head = relief.head && uv.y >= 0;
+  const Point2 tiles = is_head ? Point2{1, 1} : relief.tiles;
+  const HeightMap& map = is_head ? *relief.head : *relief.map;
+  const Point2 slope = map.sample({uv.x * tiles.x, uv.y * tiles.y}).gradient;
   const double height = relief.height * std::sqrt(size2);
-  const Vec3 gradient = (height * relief.tiles.x * slope.x / area) * cross(dv, normal) +
-                        (height * relief.tiles.y * slope.y / area) * cross(normal, du);
+  const Vec3 gradient = (height * tiles.x * slope.x / area) * cross(dv, normal) +
+                        (height * tiles.y * slope.y / area) * cross(normal, du);
   return normalize(normal - gradient);
 }
 

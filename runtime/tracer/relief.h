@@ -23,6 +23,8 @@ struct Relief {
   std::shared_ptr<const HeightMap> map;
   Point2 tiles;       // copies of the map per unit of u and of v
   double height = 0;  // of the map's value 1, in units of |dp/du|: the length of a unit of u on the surface
+  // Where v >= 0, in place of `map` if given: one copy per unit of u and of v. That of a snake's head.
+  std::shared_ptr<const HeightMap> head = {};
 };
 
 // The unit normal of the surface displaced by the relief along the unit `normal`, to first order in curvature

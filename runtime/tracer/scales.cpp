@@ -1,8 +1,10 @@
 #include "runtime/tracer/scales.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "runtime/tracer/snake_scales.h"
 #include "sunbeam/core/rng.h"
 
 namespace sunbeam {
@@ -111,23 +113,89 @@ class HardDisks {
 
 double dome(double t) { return t >= 1 ? 1 : 1 - square(1 - std::max(t, 0.0)); }
 
-double cell_height(const PeriodicBins& bins, const Point2& place, double edge) {
-  constexpr double kReach = 2.25;  // beyond, no border is nearer than half a scale width
-  double nearest2 = 1e300;
-  std::size_t own = 0;
-  Point2 center;
-  bins.for_near(place, kReach, [&](std::size_t i, const Point2& at) {
-    if (const double d2 = length2(at - place); d2 < nearest2) nearest2 = d2, own = i, center = at;
-  });
-  double height = 1;
-  bins.for_near(place, kReach, [&](std::size_t i, const Point2& at) {
-    const double separation2 = length2(at - center);
-    if (i == own && separation2 < 1e-12) return;
-    const double to_border = (length2(at - place) - nearest2) / (2 * std::sqrt(separation2));
-    height *= dome(to_border / edge);
-  });
-  return height;
+std::vector<ScaleSite> sites_of(const ScaleLayout& layout) {
+  switch (layout.pattern) {
+    case ScalePattern::snake_body:
+      return snake_body_sites(layout.columns, layout.rows);
+    case ScalePattern::snake_head:
+      return snake_head_sites(layout.columns, layout.rows);
+    default: {
+      std::vector<ScaleSite> sites;
+      for (const Point2& center : scale_centers(layout)) sites.push_back({center});
+      return sites;
+    }
+  }
 }
+
+std::vector<Point2> centers_of(const std::vector<ScaleSite>& sites) {
+  std::vector<Point2> centers;
+  for (const ScaleSite& site : sites) centers.push_back(site.center);
+  return centers;
+}
+
+// Heights over the cells of sites that repeat with a tile.
+class Cells {
+ public:
+  // No border between a place and a site beyond `reach` is nearer than half a scale width.
+  Cells(std::vector<ScaleSite> sites, const Point2& size, double reach)
+      : sites_(std::move(sites)), centers_(centers_of(sites_)), bins_(centers_, size), reach_(reach) {}
+  Cells(const Cells&) = delete;
+  Cells& operator=(const Cells&) = delete;
+
+  double height(const Point2& place, double edge) {
+    find_near(place);
+    const Near own = *std::min_element(near_.begin(), near_.end(),
+                                       [](auto& a, auto& b) { return a.distance < b.distance; });
+    borders_.clear();
+    for (const Near& other : near_) {
+      if (length2(other.scale - own.scale) < 1e-12) continue;
+      const double behind = other.distance - own.distance;
+      const double twice = 2 * std::sqrt(length2(other.point - own.point));
+      if (behind < edge * twice) add_border(other.scale, behind / twice / edge);
+    }
+    double height = 1;
+    for (const Border& border : borders_) height *= dome(border.distance);
+    return height;
+  }
+
+ private:
+  // Of a site: its point nearest to the place, which scale it belongs to, the distance squared less the
+  // weight.
+  struct Near {
+    Point2 point, scale;
+    double distance;
+  };
+  struct Border {
+    Point2 scale;  // that lies beyond
+    double distance;
+  };
+
+  void find_near(const Point2& place) {
+    near_.clear();
+    bins_.for_near(place, reach_, [&](std::size_t i, const Point2& at) {
+      const ScaleSite& site = sites_[i];
+      const Point2 point = {at.x + std::clamp(place.x - at.x, -site.half_length, site.half_length), at.y};
+      near_.push_back({point, at - site.in_scale, length2(point - place) - site.weight});
+    });
+  }
+
+  // A scale of many sites has one border: the nearest.
+  void add_border(const Point2& scale, double distance) {
+    for (Border& border : borders_)
+      if (length2(border.scale - scale) < 1e-12) {
+        border.distance = std::min(border.distance, distance);
+        return;
+      }
+    borders_.push_back({scale, distance});
+  }
+
+  std::vector<ScaleSite> sites_;
+  std::vector<Point2> centers_;
+  PeriodicBins bins_;
+  double reach_;
+  std::vector<Near> near_;  // these two: of the place at hand, kept for their memory
+  std::vector<Border> borders_;
+};
 
 }  // namespace
 
@@ -149,15 +217,22 @@ std::vector<Point2> scale_centers(const ScaleLayout& layout) {
 
 HeightMap scale_height_map(const ScaleLayout& layout, double edge, int pixels_per_scale) {
   const Point2 size = tile_size(layout);
-  const std::vector<Point2> centers = scale_centers(layout);
-  const PeriodicBins bins(centers, size);
+  constexpr double kReach = 2.25, kReachOfShields = 0.105;  // the latter of the girth
+  const bool is_head = layout.pattern == ScalePattern::snake_head;
+  Cells cells(sites_of(layout), size, is_head ? std::max(kReach, kReachOfShields * layout.columns) : kReach);
   HeightMap map{static_cast<int>(std::lround(size.x * pixels_per_scale)),
                 static_cast<int>(std::lround(size.y * pixels_per_scale)),
                 {}};
+  const bool is_snake = layout.pattern != ScalePattern::grid;  // its sides are alike
   for (int row = 0; row < map.height; ++row)
     for (int column = 0; column < map.width; ++column) {
+      const int mirrored = map.width - 1 - column;
+      if (is_snake && mirrored < column) {
+        map.values.push_back(map.at(mirrored, row));
+        continue;
+      }
       const Point2 place = {size.x * (column + 0.5) / map.width, size.y * (1 - (row + 0.5) / map.height)};
-      map.values.push_back(static_cast<float>(cell_height(bins, place, edge)));
+      map.values.push_back(static_cast<float>(cells.height(place, edge)));
     }
   return map;
 }

@@ -1,8 +1,8 @@
-// Scales as a height map that repeats without a seam: cells of a regular hexagonal grid, or Voronoi cells of
-// a blue-noise point set.
+// Scales as a height map that repeats without a seam: cells of a regular hexagonal grid, Voronoi cells of a
+// blue-noise point set, or the scales of a snake.
 //
 // Lengths here are in scale widths: the distance of neighbouring centres of the hexagonal grid. A tile is
-// `columns` wide and `rows` * sqrt(3)/2 high and holds columns * rows cells, whatever the layout.
+// `columns` wide and `rows` * sqrt(3)/2 high; a grid or blue noise has columns * rows cells in it.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,17 @@
 
 namespace sunbeam {
 
+// grid: all cells alike, as `jitter` says. Those of a snake (snake_scales.h) take the tile for the whole
+// girth.
+enum class ScalePattern { grid, snake_body, snake_head };
+
 struct ScaleLayout {
   int columns = 1;  // 1 to kMaxScaleColumns
   int rows = 2;     // even, 2 to kMaxScaleColumns
   // 0: the hexagonal grid. Above: blue noise, no two centres nearer than 1 - 0.3 jitter. Up to 1.
   double jitter = 0;
   std::uint64_t seed = 1;  // of the blue noise
+  ScalePattern pattern = ScalePattern::grid;
 };
 inline constexpr int kMaxScaleColumns = 512;
 

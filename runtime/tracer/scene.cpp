@@ -14,6 +14,7 @@
 #include "runtime/tracer/scales.h"
 #include "runtime/tracer/sky.h"
 #include "runtime/tracer/snake.h"
+#include "runtime/tracer/snake_scales.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/frame.h"
 
@@ -204,25 +205,49 @@ std::optional<ParameterField> read_field(const ConfigTable& table, std::string_v
   return ParameterField::of(table.number(key, allowed));
 }
 
-// Scales by number: `around` of them to a unit of u and `rows` rows to a unit of v. The default is the number
-// of rows of regular hexagons where a unit of v is as long as one of u.
+std::shared_ptr<const HeightMap> scale_map(const ScaleLayout& layout, double edge, int pixels_across) {
+  const int pixels = std::clamp(pixels_across / layout.columns, 8, 64);
+  return std::make_shared<HeightMap>(scale_height_map(layout, edge, pixels));
+}
+constexpr int kMapPixels = 2048;  // across the whole map, which has all scales of a unit of u
+
+double read_edge(const ConfigTable& table) { return table.number("edge", {0.02, 0.5}, 0.35); }
+double read_scale_height(const ConfigTable& table) { return table.number("height", {-2, 2}, 0.12); }
+
+// Of regular hexagons where a unit of v is as long as one of u.
+double regular_rows(int around) { return 2 * around / std::numbers::sqrt3; }
+int even_rows(double rows) { return 2 * static_cast<int>(std::lround(rows / 2)); }
+
+// Whole rows of scutes to a unit of v, so that body and head meet where v is 0.
+Relief read_snake_scales(const ConfigTable& table) {
+  constexpr int kBodyPixels = 1024, kHeadPixels = 640;  // around; the shields are large
+  const int around = table.integer("around", kMinSnakeColumns, kMaxSnakeColumns);
+  const double edge = read_edge(table);
+  const ScaleLayout body{.columns = around, .pattern = ScalePattern::snake_body};
+  const ScaleLayout head{
+      .columns = around, .rows = even_rows(regular_rows(around)), .pattern = ScalePattern::snake_head};
+  return {.map = scale_map(body, edge, kBodyPixels),
+          .tiles = {1, static_cast<double>(head.rows) / body.rows},
+          .height = read_scale_height(table) / around,
+          .head = scale_map(head, edge, kHeadPixels)};
+}
+
+// Scales by number: `around` of them to a unit of u and `rows` rows to a unit of v.
 Relief read_scales(const ConfigTable& table) {
-  constexpr int kMapPixels = 2048;  // across the whole map, which has all scales of a unit of u
+  const int pattern = table.choice("pattern", {"hexagonal", "voronoi", "snake"}, 0);
+  if (pattern == 2) return read_snake_scales(table);
   const int around = table.integer("around", 1, kMaxScaleColumns);
-  const bool is_voronoi = table.choice("pattern", {"hexagonal", "voronoi"}, 0) == 1;
-  const double rows = table.number("rows", {1, 1e5}, 2 * around / std::numbers::sqrt3);
+  const double rows = table.number("rows", {1, 1e5}, regular_rows(around));
   ScaleLayout layout;
-  if (is_voronoi) {
+  if (pattern == 1) {
     layout.columns = around;
-    layout.rows = std::clamp(2 * static_cast<int>(std::lround(rows / 2)), 2, kMaxScaleColumns);
+    layout.rows = std::clamp(even_rows(rows), 2, kMaxScaleColumns);
     layout.jitter = table.number("jitter", {0, 1}, 1.0);
     layout.seed = static_cast<std::uint64_t>(table.integer("seed", 0, std::numeric_limits<int>::max(), 1));
   }
-  const double edge = table.number("edge", {0.02, 0.5}, 0.35);
-  const int pixels = std::clamp(kMapPixels / layout.columns, 8, 64);
-  return {.map = std::make_shared<HeightMap>(scale_height_map(layout, edge, pixels)),
+  return {.map = scale_map(layout, read_edge(table), kMapPixels),
           .tiles = {static_cast<double>(around) / layout.columns, rows / layout.rows},
-          .height = table.number("height", {-2, 2}, 0.12) / around};
+          .height = read_scale_height(table) / around};
 }
 
 Relief read_bump(const ConfigTable& table) {
@@ -241,20 +266,31 @@ std::optional<Relief> read_relief(const ConfigTable& table) {
   return {};
 }
 
-SceneMaterial read_material(const ConfigTable& table) {
-  SceneMaterial material;
-  material.name = table.string("name");
-  material.relief = read_relief(table);
-  if (table.choice("type", {"skin", "diffuse"}) == 1) {
-    material.type = SceneMaterial::Type::diffuse;
-    material.albedo = table.rgb("albedo", kUnit, material.albedo);
-    return material;
-  }
-  material.type = SceneMaterial::Type::skin;
+void read_skin(const ConfigTable& table, SceneMaterial& material) {
   constexpr std::array<double, 3> kLowest = {0, 1, 0};
   for (std::size_t k = 0; k < kParameterNames.size(); ++k)
     material.parameters[k] = read_field(table, kParameterNames[k], kLowest[k]);
   material.tangent_rotation_deg = table.number("tangent_rotation_deg", {-360, 360}, 0.0);
+}
+
+SceneMaterial read_material(const ConfigTable& table) {
+  SceneMaterial material;
+  material.name = table.string("name");
+  material.relief = read_relief(table);
+  switch (table.choice("type", {"skin", "diffuse", "gloss"})) {
+    case 0:
+      material.type = SceneMaterial::Type::skin;
+      read_skin(table, material);
+      break;
+    case 1:
+      material.type = SceneMaterial::Type::diffuse;
+      material.albedo = table.rgb("albedo", kUnit, material.albedo);
+      break;
+    default:
+      material.type = SceneMaterial::Type::gloss;
+      material.ior = table.number("ior", {1.01, 4}, material.ior);
+      material.roughness = table.number("roughness", {1e-3, 1}, material.roughness);
+  }
   return material;
 }
 
@@ -292,12 +328,12 @@ Mesh read_plane(const ConfigTable& table) {
   return quad_mesh(-0.5 * (u + v), u, v);
 }
 
-Mesh read_snake(const ConfigTable& table) {
+Snake read_snake(const ConfigTable& table) {
   SnakeShape shape;
   shape.body_radius = table.number("body_radius", kLength, shape.body_radius);
   shape.turns = table.number("turns", {1, 6}, shape.turns);
   shape.resolution = table.integer("resolution", 16, 1024, shape.resolution);
-  return snake_mesh(shape);
+  return make_snake(shape);
 }
 
 Mesh read_mesh(const ConfigTable& table, std::vector<std::string>& warnings) {
@@ -325,30 +361,51 @@ void require_mesh_coordinates(const ConfigTable& table, const Mesh& mesh) {
                                        -kMaxCoordinate, kMaxCoordinate));
 }
 
-std::variant<Sphere, Mesh> read_shape(const ConfigTable& table, std::vector<std::string>& warnings) {
-  const int type = table.choice("type", {"sphere", "torus", "plane", "mesh", "snake"});
-  Transform transform = read_transform(table);
-  if (type <= 2) transform.translate = transform.translate + point(table, "center", Vec3{});
-  if (type == 0) return read_sphere(table, transform);
-  Mesh mesh = transformed(type == 1   ? read_torus(table)
-                          : type == 2 ? read_plane(table)
-                          : type == 3 ? read_mesh(table, warnings)
-                                      : read_snake(table),
-                          transform);
+Mesh placed(const ConfigTable& table, Mesh mesh, const Transform& transform) {
+  mesh = transformed(std::move(mesh), transform);
   require_mesh_coordinates(table, mesh);
   return mesh;
 }
 
-int find_material(const ConfigTable& table, const std::vector<SceneMaterial>& materials) {
-  const std::string name = table.string("material");
+int find_material(const ConfigTable& table, std::string_view key,
+                  const std::vector<SceneMaterial>& materials) {
+  const std::string name = table.string(key);
   std::vector<std::string> names;
   for (const auto& material : materials) names.push_back(material.name);
   const auto at = std::find(names.begin(), names.end(), name);
   if (at != names.end()) return static_cast<int>(at - names.begin());
-  if (names.empty())
-    table.fail("material", fmt::format("found \"{}\", but the scene has no [[material]]", name));
-  table.fail("material", fmt::format("found \"{}\"; the nearest material is \"{}\"; allowed: \"{}\"", name,
-                                     nearest(name, names), fmt::join(names, "\", \"")));
+  if (names.empty()) table.fail(key, fmt::format("found \"{}\", but the scene has no [[material]]", name));
+  table.fail(key, fmt::format("found \"{}\"; the nearest material is \"{}\"; allowed: \"{}\"", name,
+                              nearest(name, names), fmt::join(names, "\", \"")));
+}
+
+// The eyes of snakes go to a list of their own.
+void read_object(const ConfigTable& table, Scene& scene, std::vector<SceneObject>& eyes) {
+  const int type = table.choice("type", {"sphere", "torus", "plane", "mesh", "snake"});
+  const int material = find_material(table, "material", scene.materials);
+  Transform transform = read_transform(table);
+  if (type <= 2) transform.translate = transform.translate + point(table, "center", Vec3{});
+  switch (type) {
+    case 0:
+      scene.objects.push_back({read_sphere(table, transform), material});
+      break;
+    case 1:
+      scene.objects.push_back({placed(table, read_torus(table), transform), material});
+      break;
+    case 2:
+      scene.objects.push_back({placed(table, read_plane(table), transform), material});
+      break;
+    case 3:
+      scene.objects.push_back({placed(table, read_mesh(table, scene.warnings), transform), material});
+      break;
+    default: {
+      const Snake snake = read_snake(table);
+      scene.objects.push_back({placed(table, snake.skin, transform), material});
+      eyes.push_back(
+          {placed(table, snake.eyes, transform),
+           table.has("eye_material") ? find_material(table, "eye_material", scene.materials) : material});
+    }
+  }
 }
 
 }  // namespace
@@ -363,8 +420,10 @@ Scene read_scene(const ConfigTable& config) {
   read_environment(config.table("environment"), scene);
   for (const auto& light : config.tables("light")) read_light(light, scene);
   scene.materials = read_materials(config);
-  for (const auto& table : config.tables("object"))
-    scene.objects.push_back({read_shape(table, scene.warnings), find_material(table, scene.materials)});
+  std::vector<SceneObject> eyes;
+  for (const auto& table : config.tables("object")) read_object(table, scene, eyes);
+  // Last, so that errors count the objects as the file does.
+  scene.objects.insert(scene.objects.end(), eyes.begin(), eyes.end());
   config.finish();
   if (scene.objects.empty()) config.fail("object", "found none; allowed: at least one [[object]]");
   return scene;

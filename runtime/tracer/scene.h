@@ -71,10 +71,11 @@ struct DirectionalLight {
 };
 
 struct SceneMaterial {
-  enum class Type { skin, diffuse };
+  enum class Type { skin, diffuse, gloss };
   std::string name;
   Type type = Type::diffuse;
-  Rgb albedo{0.5};  // type diffuse only
+  Rgb albedo{0.5};                      // type diffuse only
+  double ior = 1.33, roughness = 0.05;  // type gloss only: a dielectric over black, roughness its GGX alpha
   // Type skin only: what replaces the value of the recipe.
   std::array<std::optional<ParameterField>, 3> parameters;  // in the order of kParameterNames
   // Turns the local x axis of the BSDF away from the direction of increasing u, counter-clockwise about the
@@ -115,7 +116,7 @@ struct Scene {
   std::vector<PointLight> point_lights;
   std::vector<DirectionalLight> directional_lights;
   std::vector<SceneMaterial> materials;
-  std::vector<SceneObject> objects;
+  std::vector<SceneObject> objects;   // those of the file, then the eyes of its snakes
   std::vector<std::string> warnings;  // a line each, for people: what was left out of files
 };
 

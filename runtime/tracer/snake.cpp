@@ -106,7 +106,7 @@ struct CrossSection {
   }
 };
 
-constexpr double kNeckWidth = 0.56;
+constexpr double kNeckWidth = 0.58;
 constexpr double kSnoutFrom = 0.8;  // of the head; from here the snout closes like an ellipse
 
 // Of the body, but for the rounding of the tail's tip.
@@ -123,9 +123,9 @@ CrossSection body_section(double arc, double total) {
 }
 
 CrossSection head_section(double along) {
-  constexpr double kWidth[] = {kNeckWidth, 0.60, 0.75, 0.92, 0.96, 0.86, 0.71, 0.57, 0.47};
-  constexpr double kAbove[] = {kNeckWidth, 0.56, 0.57, 0.59, 0.58, 0.52, 0.42, 0.33, 0.28};
-  constexpr double kBelow[] = {kNeckWidth, 0.52, 0.48, 0.45, 0.42, 0.37, 0.31, 0.27, 0.24};
+  constexpr double kWidth[] = {kNeckWidth, 0.60, 0.68, 0.79, 0.84, 0.81, 0.71, 0.58, 0.48};
+  constexpr double kAbove[] = {kNeckWidth, 0.56, 0.54, 0.54, 0.53, 0.48, 0.40, 0.32, 0.26};
+  constexpr double kBelow[] = {kNeckWidth, 0.52, 0.47, 0.43, 0.40, 0.36, 0.31, 0.27, 0.24};
   const double into_snout = std::clamp((along - kSnoutFrom) / (1 - kSnoutFrom), 0.0, 1.0);
   const double close = std::sqrt(1 - square(into_snout));
   return {close * curve(kWidth, along), close * curve(kAbove, along), close * curve(kBelow, along)};
@@ -143,11 +143,46 @@ Spline::Point center_at(const Spline& spline, double arc) {
   return point;
 }
 
-// The mouth: a groove along both sides of the head, as a factor on the cross-section.
+// --- the features of the head: a factor on the cross-section ---
+
+// Places on the head: how far along it, and u of the right half.
+struct HeadPlace {
+  double along, u;
+};
+constexpr HeadPlace kEye{0.69, 0.36}, kNostril{0.94, 0.34};
+
+// The way from `from` over the skin, about: along the head and upwards.
+Point2 head_offset(const HeadPlace& from, double along, double u) {
+  constexpr double kGirth = 4;
+  return {(along - from.along) * kHeadLength, (std::min(u, 1 - u) - from.u) * kGirth};
+}
+
+double bump(double distance, double width) { return std::exp(-square(distance / width)); }
+
+// A groove along both sides.
 double mouth(double along, double u) {
-  if (along < 0.35) return 1;
-  const double from_belly = std::min(u, 1 - u), reach = std::min(1.0, (along - 0.35) / 0.15);
-  return 1 - 0.1 * reach * std::exp(-square((from_belly - 0.2) / 0.014));
+  if (along < 0.35) return 0;
+  const double reach = std::min(1.0, (along - 0.35) / 0.15);
+  return -0.1 * reach * bump(std::min(u, 1 - u) - 0.2, 0.014);
+}
+
+// The skin swells about the eye and folds into a rim that is strongest above it, the brow.
+constexpr double kEyeRadius = 0.16, kEyeProtrusion = 0.017;
+double orbit(double along, double u) {
+  const Point2 offset = head_offset(kEye, along, u);
+  const double distance = std::hypot(offset.x, offset.y);
+  const double opening = std::sqrt(square(kEyeRadius) - square(kEyeRadius - kEyeProtrusion));
+  const double above = distance > 0 ? offset.y / distance : 0;
+  return 0.03 * bump(distance, 0.35) + (0.035 + 0.02 * above) * bump(distance - opening - 0.04, 0.045);
+}
+
+double nostril(double along, double u) {
+  const Point2 offset = head_offset(kNostril, along, u);
+  return -0.12 * bump(std::hypot(offset.x, offset.y), 0.04);
+}
+
+double features(double along, double u) {
+  return along < 0 ? 1 : 1 + mouth(along, u) + orbit(along, u) + nostril(along, u);
 }
 
 // --- frames ---
@@ -176,7 +211,8 @@ std::vector<double> ring_arcs(double total, int per_girth) {
   for (int i = 0; i < kEndRings; ++i) arcs.push_back(kTipLength * square(static_cast<double>(i) / kEndRings));
   for (double arc = kTipLength; arc < snout;) {
     arcs.push_back(arc);
-    arc += std::max(section_at(arc, total).girth(), 0.5) / per_girth;
+    const double step = std::max(section_at(arc, total).girth(), 0.5) / per_girth;
+    arc += arc < total - kHeadLength ? step : 0.5 * step;  // the head has finer features
   }
   const double first = arcs.back();
   for (int i = 1; i <= 2 * kEndRings; ++i)
@@ -185,7 +221,8 @@ std::vector<double> ring_arcs(double total, int per_girth) {
 }
 
 std::vector<Ring> make_rings(const Spline& spline, int per_girth) {
-  constexpr double kLeastGirth = 0.8;  // v would grow without bounds towards the ends
+  // v would grow without bounds towards the ends; on the head it is to stay below 1.
+  constexpr double kLeastGirth = 0.8, kLeastHeadGirth = 3.2;
   std::vector<Ring> rings;
   for (const double arc : ring_arcs(spline.total(), per_girth)) {
     const auto [center, tangent] = center_at(spline, arc);
@@ -195,12 +232,17 @@ std::vector<Ring> make_rings(const Spline& spline, int per_girth) {
     } else {
       const Ring& last = rings.back();
       const double girth = 0.5 * (ring.section.girth() + last.section.girth());
-      ring.v = last.v + (arc - last.arc) / std::max(girth, kLeastGirth);
+      const double least = arc < spline.total() - kHeadLength ? kLeastGirth : kLeastHeadGirth;
+      ring.v = last.v + (arc - last.arc) / std::max(girth, least);
       ring.up = next_up(last.up, tangent, arc - last.arc);
     }
     ring.right = cross(ring.up, tangent);
     rings.push_back(ring);
   }
+  const auto nape = std::find_if(rings.begin(), rings.end(),
+                                 [&](const Ring& r) { return r.arc >= spline.total() - kHeadLength; });
+  const double nape_v = nape->v - (nape->arc - (spline.total() - kHeadLength)) / nape->section.girth();
+  for (Ring& ring : rings) ring.v -= nape_v;
   return rings;
 }
 
@@ -208,7 +250,7 @@ Vec3 surface_point(const Ring& ring, double u, double head_along) {
   const double angle = 2 * kPi * u, c = -std::cos(angle), s = std::sin(angle);
   const double height = c > 0 ? ring.section.above : ring.section.below;
   return ring.center +
-         mouth(head_along, u) * (height * c * ring.up + ring.section.half_width * s * ring.right);
+         features(head_along, u) * (height * c * ring.up + ring.section.half_width * s * ring.right);
 }
 
 // --- the mesh ---
@@ -246,31 +288,39 @@ void append(Mesh& mesh, const Mesh& part) {
   for (const auto& [a, b, c] : part.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
 }
 
-void add_eyes(Mesh& mesh, const std::vector<Ring>& rings, double total) {
-  constexpr double kAlong = 0.66, kRadius = 0.16, kFromBelly = 0.345, kDepth = 0.45;
-  const double arc = total - (1 - kAlong) * kHeadLength;
+Mesh eyes_mesh(const std::vector<Ring>& rings, double total) {
+  const double arc = total - (1 - kEye.along) * kHeadLength;
   const auto ring = std::find_if(rings.begin(), rings.end(), [&](const Ring& r) { return r.arc >= arc; });
-  for (const double u : {kFromBelly, 1 - kFromBelly}) {
-    Mesh eye = sphere_mesh(kRadius, 48);
-    const Vec3 on_skin = surface_point(*ring, u, kAlong);
-    eye = transformed(eye, {.translate = on_skin - kDepth * kRadius * normalize(on_skin - ring->center)});
+  Mesh eyes;
+  for (const double u : {kEye.u, 1 - kEye.u}) {
+    Mesh eye = sphere_mesh(kEyeRadius, 48);
+    const Vec3 on_skin = surface_point(*ring, u, kEye.along);
+    const Vec3 outwards = normalize(on_skin - ring->center);
+    eye = transformed(std::move(eye), {.translate = on_skin - (kEyeRadius - kEyeProtrusion) * outwards});
     for (Point2& uv : eye.uvs) uv = {u, ring->v};
-    append(mesh, eye);
+    append(eyes, eye);
   }
+  return eyes;
 }
 
 }  // namespace
 
-Mesh snake_mesh(const SnakeShape& shape) {
+Snake make_snake(const SnakeShape& shape) {
   const Spline spline = centerline(shape.turns);
   const std::vector<Ring> rings = make_rings(spline, shape.resolution / 2);
-  Mesh mesh;
-  add_skin(mesh, rings, shape.resolution, spline.total());
-  connect_grid(mesh, static_cast<std::uint32_t>(rings.size()) - 1,
+  Mesh skin;
+  add_skin(skin, rings, shape.resolution, spline.total());
+  connect_grid(skin, static_cast<std::uint32_t>(rings.size()) - 1,
                static_cast<std::uint32_t>(shape.resolution));
-  for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);  // u runs along rings here
-  add_eyes(mesh, rings, spline.total());
-  return transformed(std::move(mesh), {.scale = shape.body_radius});
+  for (auto& triangle : skin.triangles) std::swap(triangle[1], triangle[2]);  // u runs along rings here
+  const Transform size{.scale = shape.body_radius};
+  return {transformed(std::move(skin), size), transformed(eyes_mesh(rings, spline.total()), size)};
+}
+
+Mesh snake_mesh(const SnakeShape& shape) {
+  Snake snake = make_snake(shape);
+  append(snake.skin, snake.eyes);
+  return std::move(snake.skin);
 }
 
 std::vector<SnakePoint> snake_centerline(const SnakeShape& shape, int points) {

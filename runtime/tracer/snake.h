@@ -11,13 +11,17 @@ struct SnakeShape {
   int resolution = 128;  // vertices around the body, 16 to 1024; half as many to the same length along it
 };
 
-// About the z axis, on the plane z = 0, looking along -y. Closed but for the eyes, which are spheres of their
-// own sunk into the head; winding and unit normals point outwards. u runs once around the body, from the
-// middle of the belly over the right side to the back (u = 1/2), and starts again there. v runs from the tip
-// of the tail to the snout, and a step along the body changes it by its length over the girth: a unit of v is
-// as long as one of u everywhere, so that scales are not stretched; their number around the body stays. The
-// eyes have one (u, v) only, and so no scales.
-Mesh snake_mesh(const SnakeShape& shape);
+// About the z axis, on the plane z = 0, looking along -y. Both parts are closed; winding and unit normals
+// point outwards. u runs once around the body, from the middle of the belly over the right side to the back
+// (u = 1/2), and starts again there. v runs from the tip of the tail to the snout, and a step along the body
+// changes it by its length over the girth: a unit of v is as long as one of u but at both ends, so that
+// scales are not stretched; their number around the body stays. v = 0 is the nape: the body has v < 0, the
+// head 0 <= v < 1. The eyes are two spheres sunk into the head. Each has one (u, v) only, and so no scales.
+struct Snake {
+  Mesh skin, eyes;
+};
+Snake make_snake(const SnakeShape& shape);
+Mesh snake_mesh(const SnakeShape& shape);  // both parts in one
 
 // The centreline from tail to snout with the half-width of the body, body_radius = 1: what clearances are
 // told from.

@@ -12,6 +12,7 @@
 #include "runtime/tracer/render.h"
 #include "runtime/tracer/scene.h"
 #include "sunbeam/color_converted_bsdf.h"
+#include "sunbeam/gloss.h"
 #include "sunbeam/lambert.h"
 #include "sunbeam/table_bsdf.h"
 
@@ -72,6 +73,8 @@ inline RenderResult render_scene(const Scene& scene, const Skins& skins, const R
   for (const SceneMaterial& m : scene.materials) {
     if (m.type == SceneMaterial::Type::diffuse)
       owned.push_back(std::make_unique<Lambert>(m.albedo));
+    else if (m.type == SceneMaterial::Type::gloss)
+      owned.push_back(std::make_unique<Gloss>(m.ior, m.roughness));
     else
       owned.push_back(skin_bsdf(m, skins));
     bsdfs.push_back(owned.back().get());

@@ -314,7 +314,8 @@ Json measure_looks(const Effort& effort) {
                                    {"live film, pigment", "live", kAbsorption, Estimator::pfmc},
                                    {"table film", "table", 0},
                                    {"table film, pigment", "table", kAbsorption}};
-  const std::optional<Relief> scales = load_scene(scene_path("snake")).materials[0].relief;
+  const std::optional<Relief> scales =
+      load_scene(scene_path("snake"), {"material[0].scales.pattern=hexagonal"}).materials[0].relief;
   Json rows;
   for (const std::string scene : {"sphere", "torus", "snake"})
     for (const Json& row : compare_looks(scene, effort, looks, [&](Scene&s, const Look&look) {

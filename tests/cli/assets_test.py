@@ -22,6 +22,14 @@ class TextureTest(CliTest):
         self.assertEqual(bytes_of("3"), bytes_of("3"))
         self.assertNotEqual(bytes_of("3"), bytes_of("4"))
 
+    def test_scales_of_snakes(self):
+        for pattern in "snake", "snake_head":
+            self.succeed("texture", "-o", f"{pattern}.exr", "--pattern", pattern, "--columns", "12", "--rows", "14",
+                         "--pixels-per-scale", "8")
+        self.assertNotEqual((self.folder / "snake.exr").read_bytes(), (self.folder / "snake_head.exr").read_bytes())
+        self.refuse("texture", "-o", "a.exr", "--pattern", "snake",
+                    naming=("--columns: found 8; allowed for the pattern of a snake: 12 to 400",))
+
     def test_bad_values_are_told(self):
         self.refuse("texture", "-o", "a.exr", "--rows", "3", naming=("--rows: found 3; allowed: an even number",))
         self.refuse("texture", "-o", "a.exr", "--edge", "nan", naming=("--edge: found nan; allowed: 0.02 to 0.5",))

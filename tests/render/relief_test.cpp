@@ -44,6 +44,21 @@ TEST(Relief, NormalIsThatOfTheDisplacedPlane) {
   }
 }
 
+TEST(Relief, TheHeadHasAMapOfItsOwn) {
+  const UvDerivatives derivatives = {{1.5, 0, 0}, {0, 1.5, 0}};
+  Relief relief = relief_of(scales(), {3, 2}, 0.02);
+  const Relief body = relief, head = relief_of(scale_height_map({}, 0.4, 24), {1, 1}, 0.02);
+  relief.head = head.map;
+  const Vec3 up = {0, 0, 1};
+  for (const double v : {-2.3, -0.1, 0.0, 0.3, 0.9}) {
+    const Vec3 found = relief_normal(relief, {0.2, v}, up, derivatives);
+    EXPECT_EQ(length(found - relief_normal(v < 0 ? body : head, {0.2, v}, up, derivatives)), 0) << v;
+  }
+  EXPECT_GT(length(relief_normal(body, {0.2, 0.3}, up, derivatives) -
+                   relief_normal(head, {0.2, 0.3}, up, derivatives)),
+            0.001);
+}
+
 TEST(Relief, FlatOrUnknownCoordinatesLeaveTheNormal) {
   const Vec3 normal = normalize(Vec3{1, 2, 3});
   const Relief relief = relief_of(scales(), {3, 2}, 0.1);

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
+#include "runtime/tracer/snake_scales.h"
 #include "sunbeam/core/rng.h"
 
 namespace sunbeam {
@@ -130,6 +132,110 @@ TEST(Scales, HeightsSpanZeroToOne) {
   EXPECT_GE(*low, 0);
   EXPECT_LT(*low, 0.05);
   EXPECT_EQ(*high, 1);  // the plateau
+}
+
+// --- snakes ---
+
+// All sites on the tile and on a ring of copies around it.
+std::vector<ScaleSite> with_copies(const std::vector<ScaleSite>& sites, const Point2& size) {
+  std::vector<ScaleSite> all;
+  for (const ScaleSite& site : sites)
+    for (int i = -1; i <= 1; ++i)
+      for (int j = -2; j <= 2; ++j) {
+        all.push_back(site);
+        all.back().center = {site.center.x + i * size.x, site.center.y + j * size.y};
+      }
+  return all;
+}
+
+// The definition, over all copies of segments with weights; sites of one scale share a border.
+double reference_height(const std::vector<ScaleSite>& all, const Point2& place, double edge) {
+  const auto foot = [&](const ScaleSite& site) {
+    const double x = site.center.x;
+    return Point2{std::clamp(place.x, x - site.half_length, x + site.half_length), site.center.y};
+  };
+  const auto power = [&](const ScaleSite& s) { return square(distance(foot(s), place)) - s.weight; };
+  const auto scale = [](const ScaleSite& s) {  // rounded: a name
+    return std::pair(std::lround(1e6 * (s.center.x - s.in_scale.x)),
+                     std::lround(1e6 * (s.center.y - s.in_scale.y)));
+  };
+  const auto own = std::min_element(
+      all.begin(), all.end(), [&](const ScaleSite& a, const ScaleSite& b) { return power(a) < power(b); });
+  std::map<std::pair<long, long>, double> to_border;
+  for (const ScaleSite& other : all) {
+    if (scale(other) == scale(*own)) continue;
+    const double d = (power(other) - power(*own)) / (2 * distance(foot(other), foot(*own)));
+    const auto [at, is_new] = to_border.try_emplace(scale(other), d);
+    if (!is_new) at->second = std::min(at->second, d);
+  }
+  double height = 1;
+  for (const auto& [name, d] : to_border)
+    if (d < edge) height *= 1 - square(1 - d / edge);
+  return height;
+}
+
+const ScaleLayout kBody{.columns = 24, .rows = 2, .pattern = ScalePattern::snake_body};
+const ScaleLayout kHead{.columns = 24, .rows = 28, .pattern = ScalePattern::snake_head};
+
+TEST(SnakeScales, HeightsAreThoseOfAllCopiesOfAllScales) {
+  for (const auto& [layout, sites] :
+       {std::pair(kBody, snake_body_sites(24, 2)), std::pair(kHead, snake_head_sites(24, 28))}) {
+    const HeightMap map = scale_height_map(layout, 0.4, 8);
+    const Point2 size = tile_size(layout);
+    const std::vector<ScaleSite> all = with_copies(sites, size);
+    Rng rng(1, 0);
+    for (int i = 0; i < 400; ++i) {
+      const int column = static_cast<int>(rng.uniform() * map.width);
+      const int row = static_cast<int>(rng.uniform() * map.height);
+      const Point2 place = {size.x * (column + 0.5) / map.width, size.y * (1 - (row + 0.5) / map.height)};
+      ASSERT_NEAR(map.at(column, row), reference_height(all, place, 0.4), 1e-5) << column << ' ' << row;
+    }
+  }
+}
+
+TEST(SnakeScales, HeightsSpanZeroToOne) {
+  for (const ScaleLayout& layout : {kBody, kHead}) {
+    const HeightMap map = scale_height_map(layout, 0.35, 16);
+    const auto [low, high] = std::minmax_element(map.values.begin(), map.values.end());
+    EXPECT_GE(*low, 0);
+    EXPECT_LT(*low, 0.1);
+    EXPECT_EQ(*high, 1);
+  }
+}
+
+// One scute from side to side: a plateau across the whole belly, and a groove between it and the next.
+TEST(SnakeScales, ScutesSpanTheBelly) {
+  const HeightMap map = scale_height_map(kBody, 0.35, 32);
+  for (const double u : {0.0, 0.02, 0.05, 0.08, 0.93, 0.97}) {
+    EXPECT_GT(map.sample({u, 0.25}).height, 0.99) << u;  // of the first row, which has the scute
+    EXPECT_LT(map.sample({u, 0.75}).height, 0.1) << u;
+    EXPECT_NEAR(map.sample({u, 0.25}).gradient.x, 0, 1e-4) << u;
+  }
+  EXPECT_LT(map.sample({0.1, 0.25}).height, 0.1);  // where the hexagons begin
+}
+
+TEST(SnakeScales, HexagonsGrowTowardsTheBelly) {
+  std::vector<double> row;
+  for (const ScaleSite& site : snake_body_sites(36, 2))
+    if (site.half_length == 0 && site.center.y < 0.5) row.push_back(site.center.x);
+  const auto width = [&](std::size_t k) { return row[k + 1] - row[k]; };
+  EXPECT_GT(width(0), 1.15 * width(row.size() / 2));
+  EXPECT_NEAR(width(row.size() / 2), 1, 0.1);
+  for (std::size_t k = 0; k + 1 < row.size() / 2; ++k) EXPECT_GE(width(k), width(k + 1) - 1e-12);
+}
+
+// Where v is 0 the head's map takes over from the body's: heights are the same.
+TEST(SnakeScales, TheHeadContinuesTheBody) {
+  const HeightMap body = scale_height_map(kBody, 0.35, 30), head = scale_height_map(kHead, 0.35, 30);
+  const double tiles = 1.0 * kHead.rows / kBody.rows;
+  double highest = 0;
+  for (int i = 0; i < 400; ++i)
+    for (const double v : {0.0, 0.004, 0.02}) {
+      const double u = (i + 0.5) / 400, there = body.sample({u, v * tiles}).height;
+      ASSERT_NEAR(head.sample({u, v}).height, there, 0.03) << u << ' ' << v;  // pixels differ a little
+      highest = std::max(highest, there);
+    }
+  EXPECT_GT(highest, 0.99);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/tracer/image_io.h"
+#include "runtime/tracer/snake.h"
 #include "tests/render/support.h"
 
 namespace sunbeam {
@@ -128,6 +129,36 @@ TEST(Scene, ReliefsAreInUnitsOfTheSurface) {
   EXPECT_EQ(file.map->values, (std::vector<float>{0, 1}));
 }
 
+TEST(Scene, SnakeScalesFitBodyAndHead) {
+  const Relief relief = *scene_from(kCamera + kMaterial +
+                                    "scales = { pattern = 'snake', around = 13, height = 0.2 }\n" + kSphere)
+                             .materials[0]
+                             .relief;
+  EXPECT_NEAR(relief.height, 0.2 / 13, 1e-12);
+  EXPECT_EQ(relief.tiles.x, 1);
+  EXPECT_EQ(relief.tiles.y, 8);  // whole; of regular hexagons 7.5
+  ASSERT_TRUE(relief.head);
+  // Both maps have pixels of one shape.
+  EXPECT_NEAR(relief.head->height / relief.tiles.y / relief.head->width,
+              1.0 * relief.map->height / relief.map->width, 1e-3);
+}
+
+TEST(Scene, EyesComeLastWithTheirOwnMaterialOrThatOfTheSkin) {
+  const std::string snake = "[[object]]\ntype = 'snake'\nresolution = 16\nscale = 3\nmaterial = 'grey'\n";
+  const std::string gloss = "[[material]]\nname = 'eye'\ntype = 'gloss'\nroughness = 0.2\n";
+  const Scene scene =
+      scene_from(kCamera + kMaterial + gloss + snake + "eye_material = 'eye'\n" + snake + kSphere);
+  EXPECT_EQ(scene.materials[1].type, SceneMaterial::Type::gloss);
+  EXPECT_EQ(scene.materials[1].roughness, 0.2);
+  ASSERT_EQ(scene.objects.size(), 5u);
+  EXPECT_TRUE(std::holds_alternative<Sphere>(scene.objects[2].shape));
+  EXPECT_EQ(scene.objects[0].material, 0);
+  EXPECT_EQ(scene.objects[3].material, 1);
+  EXPECT_EQ(scene.objects[4].material, 0);
+  const Snake unscaled = make_snake({.resolution = 16});
+  EXPECT_EQ(length(std::get<Mesh>(scene.objects[3].shape).positions[5] - 3 * unscaled.eyes.positions[5]), 0);
+}
+
 TEST(Scene, ObjectsAreScaledThenTurnedThenMoved) {
   const Scene scene = scene_from(kCamera + kMaterial + R"(
     [[object]]
@@ -242,6 +273,20 @@ INSTANTIATE_TEST_SUITE_P(
                  "key 'object[0].rotate_deg': turns no exact sphere"},
         BadScene{"far_object", object("type = 'torus'\nmajor_radius = 9e5\nminor_radius = 5e5\nscale = 2\n"),
                  "key 'object[0].type': the object reaches"},
+        BadScene{"eye_material", object("type = 'snake'\nresolution = 16\neye_material = 'gray'\n"),
+                 "key 'object[0].eye_material': found \"gray\"; the nearest material is \"grey\""},
+        BadScene{"eye_material_of_a_torus",
+                 object("type = 'torus'\nmajor_radius = 2\nminor_radius = 1\neye_material = 'grey'\n"),
+                 "'object[0].eye_material': is not known"},
+        BadScene{"gloss_ior", material("name = 'b'\ntype = 'gloss'\nior = 1\n"),
+                 "key 'material[1].ior': found 1; allowed: 1.01 to 4"},
+        BadScene{"few_scales_of_a_snake",
+                 material("name = 'b'\ntype = 'skin'\nscales = { pattern = 'snake', around = 11 }\n"),
+                 "key 'material[1].scales.around': found 11; allowed: 12 to 400"},
+        BadScene{
+            "rows_of_a_snake",
+            material("name = 'b'\ntype = 'skin'\nscales = { pattern = 'snake', around = 12, rows = 12 }\n"),
+            "'material[1].scales.rows': is not known"},
         BadScene{"snake_turns", object("type = 'snake'\nturns = 0.5\n"), "found 0.5; allowed: 1 to 6"},
         BadScene{
             "scales_and_bump",
@@ -262,7 +307,8 @@ INSTANTIATE_TEST_SUITE_P(
                  "key 'object[0].minor_radius': found 1; allowed: below major_radius, 1"},
         BadScene{"zero_normal", object("type = 'plane'\nnormal = [0, 0, 0]\n"), "key 'object[0].normal'"},
         BadScene{"object_type", object("type = 'cube'\n"), "found \"cube\"; allowed: \"sphere\", \"torus\""},
-        BadScene{"material_type", material("name = 'b'\ntype = 'metal'\n"), "allowed: \"skin\", \"diffuse\""},
+        BadScene{"material_type", material("name = 'b'\ntype = 'metal'\n"),
+                 "allowed: \"skin\", \"diffuse\", \"gloss\""},
         BadScene{"albedo", material("name = 'b'\ntype = 'diffuse'\nalbedo = 1.5\n"),
                  "found 1.5; allowed: 0 to 1"},
         BadScene{"skin_albedo", material("name = 'b'\ntype = 'skin'\nalbedo = 0.5\n"),

@@ -81,24 +81,30 @@ TEST(Snake, IsClosedAndFacesOutwards) {
   EXPECT_GT(volume(mesh), 0);
 }
 
+// Of the body, from the tip of the tail to the nape.
+double length_in_v(const Mesh& mesh) {
+  double least = 0;
+  for (const Point2& uv : mesh.uvs) least = std::min(least, uv.y);
+  return -least;
+}
+
 TEST(Snake, CoordinatesDoNotJumpAndScalesAreNotStretched) {
   const Mesh mesh = snake_mesh(kShape);
-  double least_v = 1e300, most_v = -1e300;
+  const double most_v = length_in_v(mesh);
   for (const auto& t : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
       const Point2 &p = mesh.uvs[t[k]], &q = mesh.uvs[t[(k + 1) % 3]];
       ASSERT_LT(std::abs(p.x - q.x), 1.01 / 64);
       ASSERT_LT(std::abs(p.y - q.y), 1.5 / 32);
-      least_v = std::min(least_v, p.y), most_v = std::max(most_v, p.y);
     }
-  EXPECT_EQ(least_v, 0);
   EXPECT_GT(most_v, 5);
   // On the body (not tail, head or eyes) a unit of u is as long as one of v, up to the bend of the coil.
   const std::vector<UvDerivatives> derivatives = vertex_derivatives(mesh);
   double log_ratio = 0, worst = 0;
   int count = 0;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    if (mesh.uvs[i].y < 0.5 * most_v || mesh.uvs[i].y > 0.8 * most_v) continue;
+    const double from_tail = mesh.uvs[i].y + most_v;
+    if (from_tail < 0.5 * most_v || from_tail > 0.8 * most_v) continue;
     if (length(derivatives[i].du) == 0) continue;
     const double ratio = std::log(length(derivatives[i].dv) / length(derivatives[i].du));
     log_ratio += ratio, worst = std::max(worst, std::abs(ratio)), ++count;
@@ -111,16 +117,16 @@ TEST(Snake, CoordinatesDoNotJumpAndScalesAreNotStretched) {
 
 TEST(Snake, BellyIsDownAndBackIsUp) {
   const Mesh mesh = snake_mesh(kShape);
-  double most_v = 0;
-  for (const Point2& uv : mesh.uvs) most_v = std::max(most_v, uv.y);
+  const double most_v = length_in_v(mesh);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const Point2& uv = mesh.uvs[i];
-    if (uv.y < 0.1 * most_v || uv.y > 0.75 * most_v) continue;  // the neck may be steep
+    const double from_tail = (uv.y + most_v) / most_v;
+    if (from_tail < 0.1 || from_tail > 0.75) continue;  // the neck may be steep
     if (uv.x == 0 || uv.x == 1) {
-      ASSERT_LT(mesh.normals[i].z, -0.8) << uv.y / most_v;
+      ASSERT_LT(mesh.normals[i].z, -0.8) << from_tail;
     }
     if (uv.x == 0.5) {
-      ASSERT_GT(mesh.normals[i].z, 0.8) << uv.y / most_v;
+      ASSERT_GT(mesh.normals[i].z, 0.8) << from_tail;
     }
   }
 }
@@ -147,8 +153,7 @@ TEST(Snake, DoesNotPassThroughItself) {
   }
 }
 
-TEST(Snake, HeadIsWiderThanTheNeckAndFlat) {
-  const Mesh mesh = snake_mesh(kShape);
+TEST(Snake, HeadIsALittleWiderThanTheNeckAndFlat) {
   const std::vector<SnakePoint> line = snake_centerline(kShape, 400);
   double head = 0, neck = 1e300;
   for (const SnakePoint& p : line) {
@@ -156,8 +161,62 @@ TEST(Snake, HeadIsWiderThanTheNeckAndFlat) {
     if (back < 3) head = std::max(head, p.half_width);
     if (back > 2 && back < 6) neck = std::min(neck, p.half_width);
   }
-  EXPECT_GT(head, 1.5 * neck);
+  EXPECT_GT(head, 1.3 * neck);
+  EXPECT_LT(head, 1.6 * neck);
   EXPECT_EQ(line.back().half_width, 0);
+}
+
+// What relief maps of heads rely on, at every resolution: v is 0 at the nape, 3.5 body radii behind the
+// snout, and stays below 1.
+TEST(Snake, HeadFillsTheFirstUnitOfV) {
+  for (const int resolution : {16, 64, 192}) {
+    const Mesh skin = make_snake({.body_radius = 1, .resolution = resolution}).skin;
+    double snout = 0;
+    for (const Point2& uv : skin.uvs) snout = std::max(snout, uv.y);
+    EXPECT_NEAR(snout, 0.95, 0.01) << resolution;
+    const std::vector<SnakePoint> line = snake_centerline({.body_radius = 1}, 4000);
+    for (std::size_t i = 0; i < skin.uvs.size(); ++i) {
+      if (skin.uvs[i].x != 0.25) continue;  // the right side, level with the centreline
+      const auto nearest = std::min_element(line.begin(), line.end(), [&](auto& a, auto& b) {
+        return length(a.position - skin.positions[i]) < length(b.position - skin.positions[i]);
+      });
+      const double back = line.back().arc - nearest->arc;
+      if (std::abs(back - 3.5) < 0.1 || back > 5) continue;
+      ASSERT_EQ(skin.uvs[i].y<0, back> 3.5) << resolution << ' ' << back;
+    }
+  }
+}
+
+// Two closed spheres, mirror images, each for the most part within the head, its cap outside.
+TEST(Snake, EyesAreSetInTheHead) {
+  const Snake snake = make_snake({.body_radius = 1, .resolution = 128});
+  expect_closed(snake.eyes);
+  const std::size_t half = snake.eyes.positions.size() / 2;
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    const Point2& uv = snake.eyes.uvs[eye * half];
+    std::vector<std::size_t> around;  // vertices of the skin
+    for (std::size_t k = 0; k < snake.skin.uvs.size(); ++k)
+      if (std::hypot(snake.skin.uvs[k].x - uv.x, snake.skin.uvs[k].y - uv.y) < 0.1) around.push_back(k);
+    std::size_t outside = 0;
+    double farthest = 0;
+    for (std::size_t i = eye * half; i < (eye + 1) * half; ++i) {
+      const Vec3& p = snake.eyes.positions[i];
+      const auto nearest = *std::min_element(around.begin(), around.end(), [&](std::size_t a, std::size_t b) {
+        return length(p - snake.skin.positions[a]) < length(p - snake.skin.positions[b]);
+      });
+      const double height = dot(p - snake.skin.positions[nearest], snake.skin.normals[nearest]);
+      outside += height > 0;
+      farthest = std::max(farthest, height);
+    }
+    const double share = static_cast<double>(outside) / static_cast<double>(half);
+    EXPECT_GT(share, 0.03);
+    EXPECT_LT(share, 0.25);
+    EXPECT_GT(farthest, 0.01);
+    EXPECT_LT(farthest, 0.05);
+    EXPECT_NEAR(snake.eyes.uvs[0].x + snake.eyes.uvs[half].x, 1, 1e-12);
+  }
+  EXPECT_EQ(snake_mesh({.body_radius = 1, .resolution = 128}).triangles.size(),
+            snake.skin.triangles.size() + snake.eyes.triangles.size());
 }
 
 TEST(Snake, FollowsItsParameters) {

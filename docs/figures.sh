@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The pictures of docs/figures.md: bash docs/figures.sh [--size WIDTHxHEIGHT] [--spp N] [--only NAME] [--out FOLDER]
 # --size and --spp replace each picture's (each cell's, in a montage) own; NAME: bands fig1 fig4 fig5 fig6 spectrum sheets.
-# Needs build/release/bin/sunbeam (bash cmake/demo.sh). Tables, .exr files and the numbers of the captions (numbers_fig5.md, numbers_fig6.md) stay in build/figures.
+# Needs build/release/bin/sunbeam (bash cmake/demo.sh), python3-pil and fonts-dejavu-core. Tables, .exr files and the numbers of the captions (numbers_fig5.md, numbers_fig6.md) stay in build/figures.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -23,6 +23,7 @@ esac
 
 sunbeam=build/release/bin/sunbeam
 mkdir -p "$out" "$work"
+/usr/bin/python3 -c 'import PIL' || { echo "python3-pil is missing: apt-get install python3-pil fonts-dejavu-core" >&2; exit 1; }
 
 # quietly COMMAND...: what it says goes to the log, and to the screen if it fails.
 quietly() { "$@" >"$work/log" 2>&1 || { cat "$work/log" >&2; exit 1; }; }
@@ -40,23 +41,32 @@ render() {
   quietly "$sunbeam" render "$2" -o "$work/$1.exr" --size "${size:-$3}" --spp "${spp:-$4}" "${@:5}"
 }
 
-# The skin by table and live, by PFMC: NAME_table, NAME_live and their FLIP, NAME_flip.png; a row of numbers_FIGURE.md.
+# flip NAME A B: the mean FLIP of two pictures; draws it as NAME_flip.png. What compare says of them stays in build/figures/log.
+flip() {
+  "$sunbeam" compare "$work/$2.exr" "$work/$3.exr" --png "$work/$1_flip.png" >"$work/log" 2>&1
+  awk '$1 == "flip" { printf "%.4f", $2 }' "$work/log"
+}
+
+# The skin by table and twice live, by PFMC: NAME_table, NAME_live and NAME_noise with their FLIP, NAME_flip.png of table against live
+# and NAME_noise_flip.png of live against live; a row of numbers_FIGURE.md.
 both() {
-  local name=$1 scene=$2 table=$3
+  local name=$1 scene=$2 table=$3 floor error
   render "${name}_table" "$scene" "$cell" "$samples" --table "$table" "${@:4}"
   render "${name}_live" "$scene" "$cell" "$samples" --material live --estimator pfmc --seed 2 "${@:4}"
-  "$sunbeam" compare "$work/${name}_table.exr" "$work/${name}_live.exr" --png "$work/${name}_flip.png" >"$work/log" 2>&1
-  awk -v name="$name" '
-    $1 == "flip" || $1 == "relmse" { value[$1] = $2 }
+  render "${name}_noise" "$scene" "$cell" "$samples" --material live --estimator pfmc --seed 3 "${@:4}"
+  floor=$(flip "${name}_noise" "${name}_noise" "${name}_live")
+  error=$(flip "$name" "${name}_table" "${name}_live")
+  awk -v name="$name" -v error="$error" -v floor="$floor" '
+    $1 == "relmse" { relmse = $2 }
     $1 == "bias" { share = 100 * $3 / $NF; z = $8; if (share < 0) share = -share; if (z < 0) z = -z
                    if (share > bias) bias = share; if (z > sigma) sigma = z }
     $1 == "blocks" { blocks = $6 }
-    END { printf "| %s | %.4f | %.5f | %.2f %% | %.1f | %.2f %% |\n", name, value["flip"], value["relmse"], bias, sigma, blocks }
+    END { printf "| %s | %s | %s | %.5f | %.2f %% | %.1f | %.2f %% |\n", name, error, floor, relmse, bias, sigma, blocks }
   ' "$work/log" >>"$work/numbers_$figure.md"
 }
 
-# montage OUT COLUMNS NAME...
-montage() { quietly python3 docs/montage.py "$out/$1.png" "$2" "${@:3}"; }
+# montage OUT COLUMNS [OPTION...] PICTURE...
+montage() { quietly /usr/bin/python3 docs/montage.py "$out/$1.png" "$2" "${@:3}"; }
 
 pngs() { printf "$work/%s.png " "$@"; }
 
@@ -100,10 +110,12 @@ fig5() {
       both "fig5_albedo0_${nm}_$ior" "$(black fig5)" "$work/albedo0.exr" "${keys[@]}"
     done
   done
-  montage fig5 3 $(pngs "${names[@]/%/_table}")
-  montage fig5_live 3 $(pngs "${names[@]/%/_live}")
-  montage fig5_flip 3 $(pngs "${names[@]/%/_flip}")
-  montage fig5_albedo0 3 $(pngs "${black_names[@]/%/_table}")
+  local captions=(--top '300 nm|600 nm|1200 nm' --left 'n 1|n 2')
+  montage fig5 3 "${captions[@]}" $(pngs "${names[@]/%/_table}")
+  montage fig5_live 3 "${captions[@]}" $(pngs "${names[@]/%/_live}")
+  montage fig5_flip 3 --top '300 nm|600 nm|1200 nm' --left 'n 1|n 2|n 1, noise|n 2, noise' \
+    $(pngs "${names[@]/%/_flip}" "${names[@]/%/_noise_flip}")
+  montage fig5_albedo0 3 "${captions[@]}" $(pngs "${black_names[@]/%/_table}")
 }
 
 fig6() {
@@ -121,9 +133,9 @@ fig6() {
     black_names+=("${f}_albedo0_c_table" "${f}_albedo0_d_table" "${f}_albedo0_c_live" "${f}_albedo0_d_live"
       "${f}_albedo0_c_flip" "${f}_albedo0_d_flip")
   done
-  montage fig6 4 $(pngs "${names[@]}")
-  montage fig6_live 4 $(pngs "${checks[@]}")
-  montage fig6_albedo0 6 $(pngs "${black_names[@]}")
+  montage fig6 4 --top '(a)|(b)|(c)|(d)' $(pngs "${names[@]}")
+  montage fig6_live 4 --top '(c) live|(d) live|(c) FLIP|(d) FLIP' $(pngs "${checks[@]}")
+  montage fig6_albedo0 6 --top '(c) table|(d) table|(c) live|(d) live|(c) FLIP|(d) FLIP' $(pngs "${black_names[@]}")
 }
 
 # Three wavelengths above, the whole spectrum below; both live and exact.
@@ -136,20 +148,20 @@ spectrum() {
     render "full_$nm" tables/scenes/fig5.toml 256x144 96 --material live --set "material[0].film_thickness_nm=$nm"
     three+=("rgb3_$nm") whole+=("full_$nm")
   done
-  montage spectrum 3 $(pngs "${three[@]}" "${whole[@]}")
+  montage spectrum 3 --top '300 nm|600 nm|1200 nm' --left '3 waves|full' $(pngs "${three[@]}" "${whole[@]}")
 }
 
 # sheet NAME KEY VALUE...: film thickness from left to right, the values of KEY from top to bottom.
 sheet() {
-  local name=$1 key=$2 value nm names=()
+  local name=$1 key=$2 value nm names=() thicknesses='100 200 300 400 500 600 800 1000 1500'
   for value in "${@:3}"; do
-    for nm in 100 200 300 400 500 600 800 1000 1500; do
+    for nm in $thicknesses; do
       render "${name}_${nm}_$value" tables/scenes/ball.toml 80x80 128 --table "$work/skin.exr" \
         --set "material[0].film_thickness_nm=$nm" --set "material[0].$key=$value"
       names+=("${name}_${nm}_$value")
     done
   done
-  montage "$name" 9 $(pngs "${names[@]}")
+  montage "$name" 9 --top "${thicknesses// /|}" --left "$(IFS='|'; echo "${*:3}")" $(pngs "${names[@]}")
 }
 
 sheets() {

@@ -9,175 +9,27 @@
 
 #include <CLI/CLI.hpp>
 #include <deque>
-#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "bake/cli/scene_materials.h"
 #include "bake/recipe.h"
 #include "bake/sweep.h"
-#include "runtime/tracer/camera.h"
-#include "runtime/tracer/flush_denormals.h"
-#include "runtime/tracer/render.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/table_io.h"
-#include "tests/bench/account.h"
 #include "tests/bench/child_process.h"
-#include "tests/bench/embree_ceiling.h"
+#include "tests/bench/timed_render.h"
+#include "tests/support/scratch_folder.h"
 
 namespace sunbeam {
 namespace {
 
 using Json = nlohmann::ordered_json;
-namespace fs = std::filesystem;
 
-const std::string kSources = SUNBEAM_SOURCE_DIR;
-const std::string kRecipe = kSources + "/tables/recipes/sunbeam.toml";
+const std::string kRecipe = SUNBEAM_SOURCE_DIR "/tables/recipes/sunbeam.toml";
 constexpr int kNever = 10000;  // roulette
 
-struct Effort {
-  int width = 640, height = 360, rounds = 5, spp = 4;
-  std::vector<std::string> baking = {};  // overrides
-};
 const Effort kQuick{.width = 64, .height = 36, .rounds = 2, .spp = 2, .baking = {"table.angles=4"}};
-
-// A file in a folder that is gone at the end.
-class Scratch {
- public:
-  Scratch() {
-    std::string pattern = (fs::temp_directory_path() / "sunbeam_bench_XXXXXX").string();
-    if (!mkdtemp(pattern.data())) throw Error("cannot make a scratch folder");
-    folder_ = pattern;
-  }
-  ~Scratch() { fs::remove_all(folder_); }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
-
- private:
-  fs::path folder_;
-};
-
-std::string scene_path(const std::string& name) { return kSources + "/tables/scenes/" + name + ".toml"; }
-
-// --- one run, and many in turns ---
-
-struct Run {
-  double seconds = 0;  // of the thread, without building
-  double paths = 0, rays = 0, vertices = 0;
-  double mean = 0;      // of all pixels and channels
-  double variance = 0;  // of one sample, mean over pixels and channels
-};
-
-double mean_of(const std::vector<float>& values) {
-  double sum = 0;
-  for (const float value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
-Run run_of(const RenderResult& result, int spp) {
-  const RenderStats& stats = result.stats;
-  return {.seconds = stats.cpu_seconds - stats.build_cpu_seconds,
-          .paths = static_cast<double>(stats.samples),
-          .rays = static_cast<double>(stats.rays),
-          .vertices = static_cast<double>(stats.vertices),
-          .mean = mean_of(result.mean.rgb),
-          .variance = spp * mean_of(result.variance.rgb)};
-}
-
-// A scene with its materials, ready to be rendered by one thread.
-class Prepared {
- public:
-  Prepared(const std::string& name, const std::string& mode, const Effort& effort,
-           Estimator estimator = Estimator::automatic, const std::function<void(Scene&)>& change = {})
-      : effort_(effort), scene_(load_scene(scene_path(name))) {
-    if (change) change(scene_);
-    materials_.emplace(scene_, scene_path(name), mode, estimator);
-  }
-  Scene& scene() { return scene_; }
-  Run operator()(int round) const { return render_with(round, false); }
-  Run render_with(int round, bool first_hits) const {
-    return run_of(render(scene_, materials_->bsdfs(),
-                         {.width = effort_.width,
-                          .height = effort_.height,
-                          .spp = effort_.spp,
-                          .threads = 1,
-                          .seed = static_cast<std::uint64_t>(round),
-                          .first_hits = first_hits}),
-                  effort_.spp);
-  }
-
- private:
-  Effort effort_;
-  Scene scene_;
-  std::optional<SceneMaterials> materials_;
-};
-
-Run trace_bare(const EmbreeCeiling& ceiling, const Scene& scene, const Effort& effort, int round) {
-  const FlushDenormals flush;
-  const Camera camera(scene.camera, effort.width, effort.height);
-  Rng rng(static_cast<std::uint64_t>(round), 0);
-  EmbreeCeiling::Counts counts;
-  const double start = thread_seconds();
-  for (int y = 0; y < effort.height; ++y)
-    for (int x = 0; x < effort.width; ++x)
-      for (int k = 0; k < effort.spp; ++k) {
-        const double dx = rng.uniform(), dy = rng.uniform();
-        ceiling.trace(camera.ray(x + dx, y + dy, rng).direction, rng, counts);
-      }
-  Run run{.seconds = thread_seconds() - start, .rays = static_cast<double>(counts.rays)};
-  run.paths = static_cast<double>(effort.width) * effort.height * effort.spp;
-  run.mean = counts.radiance / run.paths;
-  return run;
-}
-
-using Runs = std::vector<Run>;  // a round each
-using Variant = std::function<Run(int round)>;
-
-std::vector<Runs> in_turns(int rounds, const std::vector<Variant>& variants) {
-  std::vector<Runs> all(variants.size());
-  for (int round = 0; round < rounds; ++round)
-    for (std::size_t i = 0; i < variants.size(); ++i) all[i].push_back(variants[i](round));
-  return all;
-}
-
-template <class Value>
-double median_of(const Runs& runs, Value value) {
-  std::vector<double> values;
-  for (const Run& run : runs) values.push_back(value(run));
-  return median(values);
-}
-
-template <class Value>
-double mean_of(const Runs& runs, Value value) {
-  double sum = 0;
-  for (const Run& run : runs) sum += value(run);
-  return sum / static_cast<double>(runs.size());
-}
-
-// Of `runs` over `reference`, the median over rounds.
-template <class Value>
-double ratio(const Runs& runs, const Runs& reference, Value value) {
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < runs.size(); ++i) ratios.push_back(value(runs[i]) / value(reference[i]));
-  return median(ratios);
-}
-
-double path_seconds(const Run& run) { return run.seconds / run.paths; }
-double vertex_seconds(const Run& run) { return run.seconds / run.vertices; }
-
-double best_ns(const Runs& runs, double (*seconds)(const Run&)) {
-  double best = seconds(runs[0]);
-  for (const Run& run : runs) best = std::min(best, seconds(run));
-  return 1e9 * best;
-}
-
-// Variance of a sample over the square of the picture's brightness.
-double relative_variance(const Runs& runs) {
-  return mean_of(runs, [](const Run& run) { return run.variance; }) /
-         square(mean_of(runs, [](const Run& run) { return run.mean; }));
-}
 
 // --- the parts ---
 
@@ -190,16 +42,14 @@ Json measure_ceiling(const Effort& effort) {
     const auto runs = in_turns(effort.rounds, {std::ref(ours), [&](int round) {
                                                  return trace_bare(ceiling, ours.scene(), effort, round);
                                                }});
-    const auto rays = [](const Run& run) { return run.rays / run.paths; };
-    const auto mean = [](const Run& run) { return run.mean; };
     rows.push_back({{"scene", name},
                     {"paths_per_second", 1e9 / best_ns(runs[0], path_seconds)},
                     {"bare_paths_per_second", 1e9 / best_ns(runs[1], path_seconds)},
                     {"ratio", ratio(runs[1], runs[0], path_seconds)},
-                    {"rays_per_path", mean_of(runs[0], rays)},
-                    {"bare_rays_per_path", mean_of(runs[1], rays)},
-                    {"mean", mean_of(runs[0], mean)},
-                    {"bare_mean", mean_of(runs[1], mean)}});
+                    {"rays_per_path", mean_of(runs[0], rays_per_path)},
+                    {"bare_rays_per_path", mean_of(runs[1], rays_per_path)},
+                    {"mean", mean_of(runs[0], mean_radiance)},
+                    {"bare_mean", mean_of(runs[1], mean_radiance)}});
   }
   return rows;
 }
@@ -214,7 +64,6 @@ Json measure_table(const Effort& effort) {
         long_table(name, "table", effort, Estimator::automatic, without_roulette);
     const auto runs = in_turns(effort.rounds, {std::cref(diffuse), std::cref(table), std::cref(long_diffuse),
                                                std::cref(long_table)});
-    const auto vertices = [](const Run& run) { return run.vertices / run.paths; };
     rows.push_back({{"scene", name},
                     {"diffuse_ns_per_path", best_ns(runs[0], path_seconds)},
                     {"table_ns_per_path", best_ns(runs[1], path_seconds)},
@@ -222,15 +71,15 @@ Json measure_table(const Effort& effort) {
                     {"diffuse_ns_per_vertex", best_ns(runs[2], vertex_seconds)},
                     {"table_ns_per_vertex", best_ns(runs[3], vertex_seconds)},
                     {"vertex_ratio", ratio(runs[3], runs[2], vertex_seconds)},
-                    {"diffuse_vertices_per_path", mean_of(runs[2], vertices)},
-                    {"table_vertices_per_path", mean_of(runs[3], vertices)}});
+                    {"diffuse_vertices_per_path", mean_of(runs[2], vertices_per_path)},
+                    {"table_vertices_per_path", mean_of(runs[3], vertices_per_path)}});
   }
   return rows;
 }
 
 // From the start of the command to the picture on disk, one sample a pixel, all cores.
 Json measure_start(const Effort& effort) {
-  const Scratch scratch;
+  const ScratchFolder scratch;
   Json rows;
   for (const std::string name : {"bench_sphere", "bench_torus"})
     for (const std::string material : {"diffuse", "table"}) {
@@ -296,7 +145,7 @@ Json compare_looks(const std::string& scene, const Effort& effort, const std::ve
     rows.push_back({{"scene", scene},
                     {"material", looks[i].name},
                     {"ns_per_path", best_ns(runs[i], path_seconds)},
-                    {"mean", mean_of(runs[i], [](const Run& run) { return run.mean; })},
+                    {"mean", mean_of(runs[i], mean_radiance)},
                     {"relative_variance", relative_variance(runs[i])},
                     {"time_ratio", time},
                     {"equal_noise_ratio", time * relative_variance(runs[i]) / relative_variance(runs[0])}});
@@ -305,7 +154,7 @@ Json compare_looks(const std::string& scene, const Effort& effort, const std::ve
 }
 
 Json measure_looks(const Effort& effort) {
-  const Scratch scratch;
+  const ScratchFolder scratch;
   const std::string table = scratch.file("table.exr");
   bake_both(table, effort);
   const std::vector<Look> looks = {{"diffuse", "diffuse", 0},
@@ -327,7 +176,7 @@ Json measure_looks(const Effort& effort) {
 }
 
 Json measure_estimators(const Effort& effort) {
-  const Scratch scratch;
+  const ScratchFolder scratch;
   const std::string table = scratch.file("table.exr");
   bake_both(table, effort);
   Json rows;

@@ -78,7 +78,7 @@ TEST(HeightMap, FilesRoundTrip) {
     for (std::size_t i = 0; i < map.values.size(); ++i)
       ASSERT_NEAR(read.values[i], map.values[i], tolerance) << name;
   }
-  EXPECT_EQ(folder.file_count(), 2u);  // no temporary is left
+  EXPECT_EQ(folder.names().size(), 2u);  // no temporary is left
 }
 
 TEST(HeightMap, ReadsPicturesOfThreeChannelsAndEightBits) {

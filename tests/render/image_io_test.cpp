@@ -31,7 +31,7 @@ TEST(Exr, RoundTripKeepsEveryBit) {
   EXPECT_EQ(read.variance.rgb, written.variance.rgb);
   EXPECT_EQ(read.attributes.at("recipe"), "id 12");
   EXPECT_EQ(read.attributes.at("scene"), "[camera]\n");
-  EXPECT_EQ(folder.file_count(), 1u);  // no temporary is left
+  EXPECT_EQ(folder.names().size(), 1u);  // no temporary is left
 }
 
 TEST(Exr, WithoutVariance) {
@@ -98,7 +98,7 @@ TEST(Exr, ErrorsNameTheFile) {
                  write_exr(missing, {numbered(2, 2, 0), numbered(2, 3, 0), {}});
                }),
                missing, "2 x 3");
-  EXPECT_EQ(folder.file_count(), 1u);  // the garbage only
+  EXPECT_EQ(folder.names().size(), 1u);  // the garbage only
 }
 
 TEST(Exr, TruncatedFileIsAnErrorNotACrash) {
@@ -119,7 +119,7 @@ TEST(Png, HasSignatureSizeAndEightBitRgb) {
   // Signature, IHDR, big-endian width 300 and height 5, 8 bits, colour type 2 (RGB).
   EXPECT_EQ(head.substr(0, 8), "\x89PNG\r\n\x1a\n");
   EXPECT_EQ(head.substr(16, 10), std::string("\0\0\x01\x2c\0\0\0\x05\x08\x02", 10));
-  EXPECT_EQ(folder.file_count(), 1u);
+  EXPECT_EQ(folder.names().size(), 1u);
 }
 
 TEST(Exr, KeepsSignsAndNamesRec709) {

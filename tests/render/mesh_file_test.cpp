@@ -46,7 +46,7 @@ TEST(MeshFile, ObjAndPlyRoundTrip) {
       EXPECT_EQ(read.dropped, 0u);
       expect_same(read.mesh, mesh, 3e-6);  // single precision, of v up to 10
     }
-  EXPECT_EQ(folder.file_count(), 2u);
+  EXPECT_EQ(folder.names().size(), 2u);
 }
 
 std::string ply(const std::string& vertices, const std::string& faces, int vertex_count = 4,

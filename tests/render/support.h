@@ -1,11 +1,8 @@
-// What the tracer tests share: scenes from text, scratch folders and BSDFs with one property each.
+// What the tracer tests share: scenes from text and BSDFs with one property each.
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -13,6 +10,7 @@
 #include "runtime/tracer/scene.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/lambert.h"
+#include "tests/support/scratch_folder.h"
 
 namespace sunbeam {
 
@@ -28,31 +26,6 @@ std::string error_of(Action action) {
   }
   return "";
 }
-
-// A folder that is empty at first and gone at the end.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "sunbeam_render_XXXXXX").string();
-    if (!mkdtemp(pattern.data())) throw Error("cannot make a scratch folder");
-    path_ = pattern;
-  }
-  ~ScratchFolder() { std::filesystem::remove_all(path_); }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(file(name)) << text;
-    return file(name);
-  }
-  std::size_t file_count() const {
-    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 // A perfect mirror of reflectance `albedo`.
 class Mirror final : public Bsdf {

@@ -43,7 +43,7 @@ TEST(FactoredFile, ConversionLosesNothing) {
 }
 
 TEST(FactoredFile, SaveAndLoadByExtension) {
-  const test::TemporaryFolder folder;
+  const ScratchFolder folder;
   const Table table = test::small_factored_table();
   for (const std::string name : {"a.exr", "a.vdb"}) {
     save_table(table, folder.file(name));

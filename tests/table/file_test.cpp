@@ -47,7 +47,7 @@ class FileSizeLimit {
 };
 
 TEST(File, RoundTripOfAnyBytes) {
-  const test::TemporaryFolder folder;
+  const ScratchFolder folder;
   std::string bytes;
   for (int k = 0; k < 100000; ++k) bytes += static_cast<char>(k * 7 % 256);
   for (const std::string& content : {bytes, std::string(), std::string("\0\r\n\x1a", 4)}) {
@@ -58,7 +58,7 @@ TEST(File, RoundTripOfAnyBytes) {
 }
 
 TEST(File, FailedWriteLeavesTheOldFile) {
-  const test::TemporaryFolder folder;
+  const ScratchFolder folder;
   write_file_atomically(folder.file("f"), "old");
   std::string message;
   {
@@ -71,7 +71,7 @@ TEST(File, FailedWriteLeavesTheOldFile) {
 }
 
 TEST(File, FailedFirstWriteLeavesNothing) {
-  const test::TemporaryFolder folder;
+  const ScratchFolder folder;
   std::string message;
   {
     const FileSizeLimit limit(1000);
@@ -82,7 +82,7 @@ TEST(File, FailedFirstWriteLeavesNothing) {
 }
 
 TEST(File, ImpossiblePlaces) {
-  const test::TemporaryFolder folder;
+  const ScratchFolder folder;
   write_file_atomically(folder.file("plain"), "old");
   ASSERT_EQ(::mkdir(folder.file("sub").c_str(), 0777), 0);
   for (const std::string name : {"none/f", "plain/f", "sub"}) {
@@ -96,7 +96,7 @@ TEST(File, ImpossiblePlaces) {
 }
 
 TEST(File, RequireWritableTouchesNothing) {
-  const test::TemporaryFolder folder;
+  const ScratchFolder folder;
   require_writable(folder.file("new"));
   EXPECT_THAT(folder.names(), IsEmpty());
   write_file_atomically(folder.file("f"), "old");

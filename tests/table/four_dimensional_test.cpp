@@ -89,7 +89,7 @@ class FourDimensional : public ::testing::TestWithParam<Precision> {};
 
 TEST_P(FourDimensional, SurvivesBothFileForms) {
   const Table table = make_table(GetParam());
-  const test::TemporaryFolder folder;
+  const ScratchFolder folder;
   for (const std::string name : {"t.exr", "t.vdb"}) {
     save_table(table, folder.file(name));
     const Table loaded = load_table(folder.file(name));

@@ -1,10 +1,9 @@
-// Synthetic tables of known content, and a folder to write them to.
+// Synthetic tables of known content.
 #pragma once
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <string>
@@ -15,34 +14,9 @@
 #include "sunbeam/table.h"
 #include "sunbeam/table_io.h"
 #include "sunbeam/table_vdb.h"
+#include "tests/support/scratch_folder.h"
 
 namespace sunbeam::test {
-
-// A folder of its own for each test, removed afterwards.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "sunbeam_table_XXXXXX").string();
-    if (!::mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
-    path_ = pattern;
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-  std::vector<std::string> names() const {
-    std::vector<std::string> result;
-    for (const auto& entry : std::filesystem::directory_iterator(path_))
-      result.push_back(entry.path().filename().string());
-    return result;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 // Both file forms behind one face.
 struct Form {

@@ -119,7 +119,7 @@ TEST(TableFile, AllZeroArrays) {
 }
 
 TEST(TableFile, SaveAndLoadByExtension) {
-  const test::TemporaryFolder folder;
+  const ScratchFolder folder;
   const Table table = small_table();
   for (const std::string name : {"a.exr", "a.vdb", "B.EXR", "B.Vdb"}) {
     save_table(table, folder.file(name));
@@ -145,7 +145,7 @@ std::string error_of(F f) {
 }
 
 TEST(TableFile, RefusesOtherNames) {
-  const test::TemporaryFolder folder;
+  const ScratchFolder folder;
   const Table table = small_table();
   for (const std::string name : {"t.png", "t", "t.exr.txt"}) {
     EXPECT_THAT(error_of([&] { save_table(table, folder.file(name)); }),

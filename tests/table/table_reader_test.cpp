@@ -278,7 +278,7 @@ TEST(TableReader, NotAFileOfItsKind) {
 }
 
 TEST(TableReader, ForeignExr) {
-  const test::TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::string picture = folder.file("picture.exr");
   {
     const std::vector<Imf::Rgba> pixels(12, Imf::Rgba(0.5f, 0.25f, 1.f));

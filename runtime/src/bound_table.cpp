@@ -11,12 +11,11 @@ constexpr int kViewerAzimuths = 4;        // of wo in a quadrant, which sampling
 constexpr int kNormalNodes = 96;          // quadrature over visible normals_, each way, for an albedo
 constexpr int kSamplingNormalNodes = 16;  // the same for the chance of sampling the first surface
 constexpr int kAlbedoBins = 32;
-constexpr int kRestAzimuths = 8;  // of an anisotropic factored table, in a quadrant
-constexpr int kRestRows = (RestSampler::kNodes - 1) / (FirstSampler::kRows - 1);  // for each of FirstSampler
-constexpr double kLeastCosine = 1e-4;                                             // of a node at grazing
+constexpr int kRestAzimuths = 8;       // of an anisotropic factored table, in a quadrant
+constexpr double kLeastCosine = 1e-4;  // of a node at grazing
 
 // The last coordinates of what EvenPositions count.
-constexpr float kLastScale = BoundRest::kScaleCosines - 1, kLastPair = RestSampler::kNodes - 1,
+constexpr float kLastScale = BoundRest::kScaleCosines - 1, kLastPair = BoundRest::kRatioCosines - 1,
                 kLastFilm = kFilmNodes - 1;
 
 double cosine_of_root(double root) { return std::max(root * root, kLeastCosine); }
@@ -174,41 +173,43 @@ double BoundTable::add_first_row(const Vec3& wo) {
   return albedo;
 }
 
+// Adds the row of `viewers`, one an azimuth, and returns the albedo.
+double BoundTable::add_rest_row(std::span<const Vec3> viewers) {
+  std::vector<double> density(RestSampler::kNodes);
+  for (const Vec3& wo : viewers)
+    visit_azimuth_mean(wo, [&](const auto& mean_rest) {
+      for (int node = 0; node < RestSampler::kNodes; ++node) {
+        const double root = RestSampler::root_of_node(node), cos_i = cosine_of_root(root);
+        // f cos dwi = f cos 2 pi dcos, dcos = 2 root droot.
+        density[static_cast<std::size_t>(node)] +=
+            std::max(0.0, mean(mean_rest(cos_i)) * cos_i * 4 * kPi * root) /
+            static_cast<double>(viewers.size());
+      }
+    });
+  return rest_sampler_.add_row(density);
+}
+
 // Densities follow the mean over channels, and over the viewer's azimuth.
 void BoundTable::prepare_sampling() {
   const int azimuths = symmetry_ == Symmetry::anisotropic ? kViewerAzimuths : 1;
-  const auto viewer = [&](double root, int a) {
-    return direction_from_cosine(cosine_of_root(root), azimuths == 1 ? 0 : kPi / 2 * (a + 0.5) / azimuths);
-  };
-  std::vector<double> of_rest;
-  for (int row = 0; row < kPairs; ++row) {
-    std::vector<double> density(kPairs);
-    for (int a = 0; a < azimuths; ++a)
-      visit_azimuth_mean(viewer(RestSampler::root_of_node(row), a), [&](const auto& mean_rest) {
-        for (int node = 0; node < kPairs; ++node) {
-          const double root = RestSampler::root_of_node(node), cos_i = cosine_of_root(root);
-          // f cos dwi = f cos 2 pi dcos, dcos = 2 root droot.
-          density[static_cast<std::size_t>(node)] +=
-              std::max(0.0, mean(mean_rest(cos_i)) * cos_i * 4 * kPi * root) / azimuths;
-        }
-      });
-    of_rest.push_back(rest_sampler_.add_row(density));
-  }
   std::vector<float> chances;
-  for (int row = 0; row < FirstSampler::kRows; ++row) {
-    const double root = static_cast<double>(row) / (FirstSampler::kRows - 1),
-                 rest = of_rest[static_cast<std::size_t>(row) * kRestRows];
+  for (int row = 0; row < kRows; ++row) {
+    const double cosine = cosine_of_root(static_cast<double>(row) / (kRows - 1));
+    std::vector<Vec3> viewers;
+    for (int a = 0; a < azimuths; ++a)
+      viewers.push_back(direction_from_cosine(cosine, azimuths == 1 ? 0 : kPi / 2 * (a + 0.5) / azimuths));
+    const double rest = add_rest_row(viewers);
     double first = 0;
     if (smooth_ || !has_cells())
-      for (int a = 0; a < azimuths; ++a)
-        first += std::max(0.0, mean(first_albedo(viewer(root, a), kSamplingNormalNodes))) / azimuths;
+      for (const Vec3& wo : viewers)
+        first += std::max(0.0, mean(first_albedo(wo, kSamplingNormalNodes))) / azimuths;
     else
-      first = add_first_row(viewer(root, 0));
+      first = add_first_row(viewers[0]);
     chances.push_back(static_cast<float>(first + rest > 0 ? first / (first + rest) : 0.5));
   }
   for (int k = 0; k < BoundRest::kScaleCosines; ++k) {
     const float cosine = static_cast<float>(k) / (BoundRest::kScaleCosines - 1);
-    ends_[k][3] = lerp(chances.data(), EvenPosition(std::sqrt(cosine), FirstSampler::kRows));
+    ends_[k][3] = lerp(chances.data(), EvenPosition(std::sqrt(cosine), kRows));
   }
 }
 
@@ -219,7 +220,10 @@ void BoundTable::prepare_pairs() {
     for (int i = 0; i < kPairs; ++i) {
       Color4& node = pairs_[static_cast<std::size_t>(o * kPairs + i)];
       if (has_scales_) node = factored->ratio(o, i);
-      node[3] = rest_sampler_.density(o, i);
+      const auto at = [](int pair, int nodes) {
+        return EvenPosition(static_cast<float>(pair) / (kPairs - 1), nodes);
+      };
+      node[3] = rest_sampler_.density(at(o, kRows), at(i, RestSampler::kNodes));
     }
 }
 
@@ -229,7 +233,7 @@ inline BoundTable::Viewer::Viewer(const BoundTable& table, const Vec3& wo)
                EvenPosition(std::min(static_cast<float>(wo.z), 1.0f), BoundRest::kScaleCosines))),
       facets(table.facets_, wo),
       pairs(std::min(facets.root, 1.0f), kPairs),
-      rows(std::min(facets.root, 1.0f), FirstSampler::kRows) {}
+      rows(std::min(facets.root, 1.0f), kRows) {}
 
 // What eval_pdf() and sample() know of several lights of one viewer, all above the horizon.
 template <int kLights>
@@ -286,10 +290,9 @@ inline Vec3 BoundTable::draw_rest(int row, Rng& rng) const {
 // One number, `lot`, has chosen the technique; what is left of it chooses the row.
 [[gnu::always_inline]] inline Vec3 BoundTable::draw(const Viewer& viewer, float lot, const Vec3& wo,
                                                     Rng& rng) const {
-  const float chance = viewer.first_chance();
-  if (lot < chance)
-    return draw_first(viewer, viewer.rows.lower + (lot < chance * viewer.rows.upper_weight), wo, rng);
-  return draw_rest(viewer.pairs.lower + (lot - chance < (1 - chance) * viewer.pairs.upper_weight), rng);
+  const float chance = viewer.first_chance(), upper = viewer.rows.upper_weight;
+  if (lot < chance) return draw_first(viewer, viewer.rows.lower + (lot < chance * upper), wo, rng);
+  return draw_rest(viewer.rows.lower + (lot - chance < (1 - chance) * upper), rng);
 }
 
 BsdfSample BoundTable::mirrored(const Viewer& viewer, const Vec3& wo) const {

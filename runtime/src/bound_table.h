@@ -54,7 +54,7 @@ class BoundTable {
 
     Color4 end;  // see ends_
     FacetViewer facets;
-    EvenPosition pairs, rows;  // in pairs_ and of first_sampler_
+    EvenPosition pairs, rows;  // in pairs_ and of both samplers
 
     float first_chance() const { return end[3]; }
   };
@@ -76,14 +76,16 @@ class BoundTable {
   };
   Moments first_moments(const Vec3& wo, std::size_t cell, int nodes) const;
   double add_first_row(const Vec3& wo);
+  double add_rest_row(std::span<const Vec3> viewers);
   Rgb first_albedo(const Vec3& wo, int nodes) const;
   Rgb rest_albedo(const Vec3& wo) const;
   void visit_azimuth_mean(const Vec3& wo,
                           const std::function<void(const std::function<Rgb(double)>&)>& visit) const;
   bool has_cells() const { return facets_.u2 == facets_.v2; }
 
-  static constexpr int kPairs = RestSampler::kNodes;
-  static_assert(kPairs == BoundRest::kRatioCosines);
+  static constexpr int kPairs = BoundRest::kRatioCosines, kRows = FirstSampler::kRows;
+  static_assert((kPairs - 1) % (kRows - 1) == 0 && (kPairs - 1) % (RestSampler::kNodes - 1) == 0,
+                "what is linear between rows and nodes of sampling must be so between pairs");
 
   Material material_;
   Symmetry symmetry_;

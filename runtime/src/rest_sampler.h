@@ -14,7 +14,7 @@ namespace sunbeam {
 
 class RestSampler {
  public:
-  static constexpr int kNodes = 33;  // of viewers and of lights
+  static constexpr int kNodes = 33;  // of lights
 
   // Root of the cosine of a node.
   static double root_of_node(int node) { return static_cast<double>(node) / kIntervals; }
@@ -30,9 +30,11 @@ class RestSampler {
     return total;
   }
 
-  // Over the root, of one viewer and light.
-  float density(int viewer, int light) const {
-    return density_[static_cast<std::size_t>(viewer * kNodes + light)];
+  // Over the root, of a viewer among the rows and a light among the nodes.
+  float density(const EvenPosition& viewer, const EvenPosition& light) const {
+    const float* row = density_.data() + viewer.lower * kNodes;
+    const float low = lerp(row, light), high = lerp(row + kNodes, light);
+    return low + viewer.upper_weight * (high - low);
   }
 
   // Root of cos(theta_i), > 0.

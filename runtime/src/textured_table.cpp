@@ -240,22 +240,6 @@ EvalPdf TexturedTable::At::eval_pdf(const TexturedDenseViewer& viewer, const Vec
   return {rest + double{pair.lobe} * film, double{rest_pdf + chance * pair.pdf}};
 }
 
-EvalPdf TexturedTable::At::eval_pdf(const Vec3& wo, const Vec3& wi) const {
-  if (wo.z <= 0 || wi.z <= 0) return {};
-  if (data_->kind == Kind::plain) return eval_pdf(TexturedViewer(*data_, place_, frame_, wo), wo, wi);
-  if (data_->kind == Kind::general)
-    return eval_pdf(TexturedGeneralViewer(*data_, place_, frame_, wo), wo, wi);
-  return eval_pdf(TexturedDenseViewer(*data_, parameters_, wo), wo, wi);
-}
-
-std::optional<BsdfSample> TexturedTable::At::sample(const Vec3& wo, Rng& rng) const {
-  if (wo.z <= 0) return {};
-  if (data_->kind == Kind::plain) return sample_for(TexturedViewer(*data_, place_, frame_, wo), wo, rng);
-  if (data_->kind == Kind::general)
-    return sample_for(TexturedGeneralViewer(*data_, place_, frame_, wo), wo, rng);
-  return sample_for(TexturedDenseViewer(*data_, parameters_, wo), wo, rng);
-}
-
 template <class Viewer>
 inline std::optional<BsdfSample> TexturedTable::At::sample_for(const Viewer& viewer, const Vec3& wo,
                                                                Rng& rng) const {
@@ -273,6 +257,32 @@ inline std::optional<BsdfSample> TexturedTable::At::sample_for(const Viewer& vie
   const EvalPdf at = eval_pdf(viewer, wo, wi);
   if (at.pdf <= 0) return {};
   return BsdfSample{wi, at.f * (wi.z / at.pdf), false, at.pdf};
+}
+
+// What `call` makes of the viewer, of the kind that the table needs.
+template <class Call>
+[[gnu::always_inline]] inline auto TexturedTable::At::for_viewer(const Vec3& wo, Call call) const {
+  if (data_->kind == Kind::plain) return call(TexturedViewer(*data_, place_, frame_, wo));
+  if (data_->kind == Kind::general) return call(TexturedGeneralViewer(*data_, place_, frame_, wo));
+  return call(TexturedDenseViewer(*data_, parameters_, wo));
+}
+
+EvalPdf TexturedTable::At::eval_pdf(const Vec3& wo, const Vec3& wi) const {
+  if (wo.z <= 0 || wi.z <= 0) return {};
+  return for_viewer(wo, [&](const auto& viewer) { return eval_pdf(viewer, wo, wi); });
+}
+
+std::optional<BsdfSample> TexturedTable::At::sample(const Vec3& wo, Rng& rng) const {
+  if (wo.z <= 0) return {};
+  return for_viewer(wo, [&](const auto& viewer) { return sample_for(viewer, wo, rng); });
+}
+
+EvalAndSample TexturedTable::At::eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const {
+  if (wo.z <= 0) return {};
+  if (wi.z <= 0) return {{}, sample(wo, rng)};
+  return for_viewer(wo, [&](const auto& viewer) {
+    return EvalAndSample{eval_pdf(viewer, wo, wi), sample_for(viewer, wo, rng)};
+  });
 }
 
 }  // namespace sunbeam

@@ -94,13 +94,24 @@ double error_at(const TexturedTable& textured, const Table& table, const Paramet
   return difference / std::max(total, 0.002);
 }
 
+// At random points, each with a direction and draws of its own: what sample() does with its random numbers
+// does not move them.
+std::vector<double> sorted_errors(const TexturedTable& textured, const Table& table, int points) {
+  Rng places(6, 0);
+  std::vector<double> errors;
+  for (int k = 0; k < points; ++k) {
+    Rng draws(6, 1 + static_cast<std::uint64_t>(k));
+    errors.push_back(error_at(textured, table, random_parameters(table, places), draws));
+  }
+  std::sort(errors.begin(), errors.end());
+  return errors;
+}
+
+// The second largest of a hundred moves between 0.006 and 0.02 with the points, where fringes stand free;
+// these are always the same.
 TEST_P(TexturedTables, AgreeWithBoundTables) {
   const TexturedTable& textured = this->textured();
-  std::vector<double> errors;
-  Rng rng(5, 0);
-  for (int k = 0; k < GetParam().points; ++k)
-    errors.push_back(error_at(textured, table(), random_parameters(table(), rng), rng));
-  std::sort(errors.begin(), errors.end());
+  const std::vector<double> errors = sorted_errors(textured, table(), GetParam().points);
   const double median = errors[errors.size() / 2], p99 = errors[errors.size() - 2];
   EXPECT_LT(median, GetParam().median);
   EXPECT_LT(p99, GetParam().p99);
@@ -189,6 +200,10 @@ TEST_P(TexturedTables, ThroughputIsValueOverDensity) {
 }
 
 // Facets turn the estimate of a very rough film.
+TEST_P(TexturedTables, EvalAndSampleIsEvalPdfAndThenSample) {
+  EXPECT_LT(test::difference_together(textured().at(kPoint), 200, 8), 1e-6);
+}
+
 TEST_P(TexturedTables, AlbedoEstimateIsNear) {
   const TexturedTable& textured = this->textured();
   for (const Vec3& wo : {kOblique, kSteep}) {
@@ -346,8 +361,8 @@ INSTANTIATE_TEST_SUITE_P(, TexturedTables, ::testing::ValuesIn(cases()),
 TEST(TexturedTable, OnePoint) {
   for (const std::string encoding : {"factored", "dense"}) {
     const Table table = baked({"one", {}, encoding});
-    Rng rng(9, 0);
-    EXPECT_LT(error_at(TexturedTable(table), table, random_parameters(table, rng), rng), 0.001);
+    const std::vector<double> errors = sorted_errors(TexturedTable(table), table, 21);
+    EXPECT_LT(errors[errors.size() / 2], 0.001);
   }
 }
 

@@ -187,6 +187,18 @@ void bound_eval_pdf(benchmark::State& state) {
   }
 }
 
+// A light and a sample of one viewer, as a path tracer wants them.
+void bound_eval_and_sample(benchmark::State& state) {
+  const Bsdf& bsdf = table_bsdf();
+  const auto pairs = random_pairs();
+  Rng rng(1, 0);
+  std::size_t k = 0;
+  for (auto _ : state) {
+    const Pair& pair = pairs[k++ % kPairs];
+    benchmark::DoNotOptimize(bsdf.eval_and_sample(pair.wo, pair.wi, rng));
+  }
+}
+
 void bound_eval_span(benchmark::State& state) {
   constexpr std::size_t kLights = 256;
   const auto& bsdf = static_cast<const TableBsdf&>(table_bsdf());
@@ -238,6 +250,7 @@ BENCHMARK_CAPTURE(sample, dense_scattering, dense_scattering());
 BENCHMARK_CAPTURE(sample, exact, exact_bsdf());
 BENCHMARK_CAPTURE(sample, live, live_bsdf());
 BENCHMARK(bound_eval_pdf);
+BENCHMARK(bound_eval_and_sample);
 BENCHMARK(bound_eval_span);
 BENCHMARK(bind);
 BENCHMARK(load);

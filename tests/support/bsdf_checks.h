@@ -156,4 +156,31 @@ inline RgbMean reciprocity_gap(const Bsdf& bsdf, const Vec3& a, const Vec3& b, i
   return gap;
 }
 
+// The largest relative difference between eval_and_sample() and eval_pdf() followed by sample(), over `pairs`
+// pairs of directions anywhere; infinite where one of them has a sample and the other has not, or another
+// one.
+inline double difference_together(const Bsdf& bsdf, int pairs, std::uint64_t seed) {
+  const auto relative = [](double a, double b) {
+    return a == b ? 0 : std::abs(a - b) / std::max(std::abs(a), std::abs(b));
+  };
+  Rng together(seed, 0), apart(seed, 0), directions(seed, 1);
+  double largest = 0;
+  for (int k = 0; k < pairs; ++k) {
+    const Vec3 wo = sample_sphere({directions.uniform(), directions.uniform()}),
+               wi = sample_sphere({directions.uniform(), directions.uniform()});
+    const auto [eval, sample] = bsdf.eval_and_sample(wo, wi, together);
+    const EvalPdf value = bsdf.eval_pdf(wo, wi, apart);
+    const auto alone = bsdf.sample(wo, apart);
+    largest = std::max(largest, relative(eval.pdf, value.pdf));
+    for (int c = 0; c < 3; ++c) largest = std::max(largest, relative(eval.f[c], value.f[c]));
+    if (sample.has_value() != alone.has_value()) return HUGE_VAL;
+    if (!sample) continue;
+    if (sample->wi.x != alone->wi.x || sample->is_dirac != alone->is_dirac) return HUGE_VAL;
+    largest = std::max(largest, relative(sample->mis_pdf, alone->mis_pdf));
+    for (int c = 0; c < 3; ++c)
+      largest = std::max(largest, relative(sample->throughput[c], alone->throughput[c]));
+  }
+  return largest;
+}
+
 }  // namespace sunbeam::test

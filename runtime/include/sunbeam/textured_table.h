@@ -74,6 +74,8 @@ class TexturedTable {
     EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi) const;
     EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return eval_pdf(wo, wi); }
 
+    EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const override;
+
     const Parameters& parameters() const { return parameters_; }
     // Weight of the mirror direction; 0 for a rough film.
     Rgb dirac(const Vec3& wo) const;
@@ -89,6 +91,8 @@ class TexturedTable {
     EvalPdf eval_pdf(const TexturedDenseViewer& viewer, const Vec3& wo, const Vec3& wi) const;
     template <class Viewer>
     EvalPdf factored_eval_pdf(const Viewer& viewer, const Vec3& wo, const Vec3& wi) const;
+    template <class Call>
+    auto for_viewer(const Vec3& wo, Call call) const;
     template <class Viewer>
     std::optional<BsdfSample> sample_for(const Viewer& viewer, const Vec3& wo, Rng& rng) const;
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The pictures of docs/figures.md: bash docs/figures.sh [--size WIDTHxHEIGHT] [--spp N] [--only NAME] [--out FOLDER]
-# --size and --spp replace each picture's (each cell's, in a montage) own; NAME: bands fig1 fig4 fig5 fig6 spectrum sheets.
+# --size and --spp replace each picture's (each cell's, in a montage) own; NAME: bands portrait fig1 fig4 fig5 fig6 spectrum sheets.
 # Needs build/release/bin/sunbeam (bash cmake/demo.sh), python3-pil and fonts-dejavu-core. Tables, .exr files and the numbers of the captions (numbers_fig5.md, numbers_fig6.md) stay in build/figures.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -17,8 +17,8 @@ while [ $# -gt 0 ]; do
   shift 2
 done
 case $only in
-  '' | bands | fig1 | fig4 | fig5 | fig6 | spectrum | sheets) ;;
-  *) echo "--only: found '$only'; allowed: bands, fig1, fig4, fig5, fig6, spectrum, sheets" >&2; exit 2 ;;
+  '' | bands | portrait | fig1 | fig4 | fig5 | fig6 | spectrum | sheets) ;;
+  *) echo "--only: found '$only'; allowed: bands, portrait, fig1, fig4, fig5, fig6, spectrum, sheets" >&2; exit 2 ;;
 esac
 
 sunbeam=build/release/bin/sunbeam
@@ -88,6 +88,12 @@ bake_black() {
 bands() {
   render bands tables/scenes/snake_bands.toml 900x560 200
   montage bands 1 "$work/bands.png"
+}
+
+portrait() {
+  render portrait tables/scenes/snake_bands.toml 900x560 256 --set 'camera.position=[1.5, -3.0, 2.0]' \
+    --set 'camera.look_at=[0.35, -0.55, 1.05]' --set camera.fov_deg=24
+  montage portrait 1 "$work/portrait.png"
 }
 
 fig1() {
@@ -171,7 +177,7 @@ sheets() {
 
 bake_default
 case ${only:-all} in fig5 | fig6 | all) bake_black ;; esac
-for figure in ${only:-bands fig1 fig4 fig5 fig6 spectrum sheets}; do
+for figure in ${only:-bands portrait fig1 fig4 fig5 fig6 spectrum sheets}; do
   rm -f "$work/numbers_$figure.md"
   start=$SECONDS
   "$figure"

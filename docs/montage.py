@@ -8,11 +8,7 @@ GAP = 4  # pixels between pictures
 STEP = 4  # values are rounded to its multiples: below the noise of a rendering, and a third less to store
 BACKGROUND = "white"
 FONT = ImageFont.truetype("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", 12)
-
-
-def text_size(text):
-    left, top, right, bottom = FONT.getbbox(text)
-    return right - left, bottom
+LINE = sum(FONT.getmetrics())
 
 
 def rounded(picture):
@@ -22,12 +18,12 @@ def rounded(picture):
 def montage(pictures, columns, top, left):
     width, height = pictures[0].size
     rows = -(-len(pictures) // columns)
-    margin_x = max((text_size(t)[0] for t in left), default=-GAP) + GAP
-    margin_y = max((text_size(t)[1] for t in top), default=-GAP) + GAP
+    margin_x = int(max((FONT.getlength(text) for text in left), default=-2 * GAP)) + 2 * GAP
+    margin_y = LINE if top else 0
     sheet = Image.new("RGB", (margin_x + columns * (width + GAP) - GAP, margin_y + rows * (height + GAP) - GAP), BACKGROUND)
     draw = ImageDraw.Draw(sheet)
     for i, text in enumerate(top):
-        draw.text((margin_x + i * (width + GAP) + width // 2, margin_y - GAP), text, "black", FONT, "md")
+        draw.text((margin_x + i * (width + GAP) + width // 2, 0), text, "black", FONT, "ma")
     for j, text in enumerate(left):
         draw.text((margin_x - GAP, margin_y + j * (height + GAP) + height // 2), text, "black", FONT, "rm")
     for k, picture in enumerate(pictures):

@@ -235,16 +235,27 @@ inline BoundTable::Viewer::Viewer(const BoundTable& table, const Vec3& wo)
       pairs(std::min(facets.root, 1.0f), kPairs),
       rows(std::min(facets.root, 1.0f), kRows) {}
 
+// Where lights lie among nodes.
+struct BoundTable::Places {
+  template <int kLights>
+  explicit Places(const FacetLights<kLights>& lights)
+      : end(kLastScale * lights.cosine, all(kLastScale)),
+        pair(kLastPair * lights.root, all(kLastPair)),
+        film(kLastFilm * lights.half_cosine, all(kLastFilm)) {}
+
+  EvenPositions end, pair, film;
+
+ private:
+  static Color4 all(float x) { return Color4{x, x, x, x}; }
+};
+
 // What eval_pdf() and sample() know of several lights of one viewer, all above the horizon.
 template <int kLights>
 [[gnu::always_inline]] inline std::array<BoundTable::Parts, kLights> BoundTable::parts(
     const Viewer& viewer, const Vec3& wo, const std::array<Vec3, kLights>& wi) const {
   constexpr float kPerSolidAngle = static_cast<float>(kInvPi / 4);  // d(root) / d(cosine) / (2 pi)
   const FacetLights<kLights> lights(facets_, viewer.facets, wo, wi.data());
-  const Color4 one = {1, 1, 1, 1};
-  const EvenPositions at_end(kLastScale * lights.cosine, kLastScale * one),
-      at_pair(kLastPair * lights.root, kLastPair * one),
-      at_film(kLastFilm * lights.half_cosine, kLastFilm * one);
+  const Places at(lights);
   const float chance = viewer.first_chance();
   const Color4 rest_pdf = (1 - chance) * kPerSolidAngle / lights.root,  // times the density over the root
       first_pdf = chance * viewer.facets.pdf_per_d * lights.d;
@@ -254,15 +265,15 @@ template <int kLights>
   std::array<Parts, kLights> result;
 #pragma GCC unroll 4
   for (int k = 0; k < kLights; ++k) {
-    const Color4 low = lerp(row, {at_pair, k}), high = lerp(row + kPairs, {at_pair, k});
+    const Color4 low = lerp(row, {at.pair, k}), high = lerp(row + kPairs, {at.pair, k});
     const Color4 ratio = low + viewer.pairs.upper_weight * (high - low);
     Parts& parts = result[static_cast<std::size_t>(k)];
-    parts.rest = has_scales_ ? viewer.end * lerp(ends_.data(), {at_end, k}) * ratio
+    parts.rest = has_scales_ ? viewer.end * lerp(ends_.data(), {at.end, k}) * ratio
                              : to_color4(rest(wo, wi[static_cast<std::size_t>(k)]));
     parts.first = Color4{};
     parts.pdf = ratio[3] * rest_pdf[k];
     if (smooth_) continue;
-    parts.first = lights.lobe[k] * lerp(film_.data(), {at_film, k});
+    parts.first = lights.lobe[k] * lerp(film_.data(), {at.film, k});
     parts.pdf += first_pdf[k] * (has_cells() ? first_sampler_.density(viewer.rows, cells[k]) : 1);
   }
   return result;
@@ -334,14 +345,11 @@ void BoundTable::eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f
 
   const auto take_four = [&](const Vec3* four, Rgb* values) {
     const FacetLights<4> lights(facets_, viewer.facets, wo, four);
-    const Color4 one = {1, 1, 1, 1};
-    const EvenPositions at_scale(kLastScale * lights.cosine, kLastScale * one),
-        at_pair(kLastPair * lights.root, kLastPair * one),
-        at_film(kLastFilm * lights.half_cosine, kLastFilm * one);
+    const Places at(lights);
 #pragma GCC unroll 4
     for (int k = 0; k < 4; ++k) {
-      Color4 value = lerp(ends_.data(), {at_scale, k}) * lerp(ratios.data(), {at_pair, k});
-      if (!smooth_) value += lights.lobe[k] * lerp(film_.data(), {at_film, k});
+      Color4 value = lerp(ends_.data(), {at.end, k}) * lerp(ratios.data(), {at.pair, k});
+      if (!smooth_) value += lights.lobe[k] * lerp(film_.data(), {at.film, k});
       values[k] = lights.cosine[k] > 0 ? to_rgb(value) : Rgb();
     }
   };

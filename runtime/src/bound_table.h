@@ -59,6 +59,7 @@ class BoundTable {
     float first_chance() const { return end[3]; }
   };
 
+  struct Places;
   template <int kLights>
   std::array<Parts, kLights> parts(const Viewer& viewer, const Vec3& wo,
                                    const std::array<Vec3, kLights>& wi) const;

@@ -82,30 +82,26 @@ const Bsdf& lambert_bsdf() {
   return bsdf;
 }
 
-void eval(benchmark::State& state, const Bsdf& bsdf) {
+// Calls of random pairs, one after the other.
+template <class Call>
+void time_pairs(benchmark::State& state, Call call) {
   const auto pairs = random_pairs();
-  Rng rng(2, 0);
   std::size_t k = 0;
-  for (auto _ : state) {
-    const Pair& pair = pairs[k++ % kPairs];
-    benchmark::DoNotOptimize(bsdf.eval(pair.wo, pair.wi, rng));
-  }
+  for (auto _ : state) benchmark::DoNotOptimize(call(pairs[k++ % kPairs]));
+}
+
+void eval(benchmark::State& state, const Bsdf& bsdf) {
+  Rng rng(2, 0);
+  time_pairs(state, [&](const Pair& pair) { return bsdf.eval(pair.wo, pair.wi, rng); });
 }
 
 void mis_pdf(benchmark::State& state, const Bsdf& bsdf) {
-  const auto pairs = random_pairs();
-  std::size_t k = 0;
-  for (auto _ : state) {
-    const Pair& pair = pairs[k++ % kPairs];
-    benchmark::DoNotOptimize(bsdf.mis_pdf(pair.wo, pair.wi));
-  }
+  time_pairs(state, [&](const Pair& pair) { return bsdf.mis_pdf(pair.wo, pair.wi); });
 }
 
 void sample(benchmark::State& state, const Bsdf& bsdf) {
-  const auto pairs = random_pairs();
   Rng rng(3, 0);
-  std::size_t k = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(bsdf.sample(pairs[k++ % kPairs].wo, rng));
+  time_pairs(state, [&](const Pair& pair) { return bsdf.sample(pair.wo, rng); });
 }
 
 // Of the default recipe: the golden table has no grid of three parameters.
@@ -179,24 +175,14 @@ const std::vector<std::string> kTexturedProduct = {"material.absorption_path=pro
 // Both of one pair at once, and the values of 256 lights for one viewer, a light.
 void bound_eval_pdf(benchmark::State& state) {
   const auto& bsdf = static_cast<const TableBsdf&>(table_bsdf());
-  const auto pairs = random_pairs();
-  std::size_t k = 0;
-  for (auto _ : state) {
-    const Pair& pair = pairs[k++ % kPairs];
-    benchmark::DoNotOptimize(bsdf.eval_pdf(pair.wo, pair.wi));
-  }
+  time_pairs(state, [&](const Pair& pair) { return bsdf.eval_pdf(pair.wo, pair.wi); });
 }
 
 // A light and a sample of one viewer, as a path tracer wants them.
 void bound_eval_and_sample(benchmark::State& state) {
   const Bsdf& bsdf = table_bsdf();
-  const auto pairs = random_pairs();
   Rng rng(1, 0);
-  std::size_t k = 0;
-  for (auto _ : state) {
-    const Pair& pair = pairs[k++ % kPairs];
-    benchmark::DoNotOptimize(bsdf.eval_and_sample(pair.wo, pair.wi, rng));
-  }
+  time_pairs(state, [&](const Pair& pair) { return bsdf.eval_and_sample(pair.wo, pair.wi, rng); });
 }
 
 void bound_eval_span(benchmark::State& state) {

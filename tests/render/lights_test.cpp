@@ -166,24 +166,6 @@ TEST(Lights, ASingleSourceIsChosenForSureAndByOneNumber) {
 TEST(Lights, OneBrightAmongManyDimOnesMakesLittleNoise) {
   // Straight below ten point lights. Their choice is all there is of noise: of x_i / p_i, drawn with chance
   // p_i, the variance is sum x_i^2 / p_i - (sum x_i)^2.
-  const std::string scene = R"(
-    [camera]
-    position = [4, 0, 2]
-    look_at = [0, 0, 0]
-    fov_deg = 0.1
-    [render]
-    width = 4
-    height = 4
-    spp = 1000
-    max_bounces = 1
-    [[material]]
-    name = "grey"
-    type = "diffuse"
-    [[object]]
-    type = "plane"
-    material = "grey"
-    half_size = 2
-  )";
   std::string lights;
   std::vector<double> radiance;
   for (int i = 0; i < 10; ++i) {
@@ -198,7 +180,8 @@ TEST(Lights, OneBrightAmongManyDimOnesMakesLittleNoise) {
     variance += square(x) / (0.01 + 0.9 * x / sum);
     even_variance += square(x) / 0.1;
   }
-  const Estimate found = grey_estimate(render_with(scene_from(scene + lights), Lambert(Rgb(0.5)), {}));
+  const Estimate found =
+      grey_estimate(render_with(scene_from(kPlane + lights), Lambert(Rgb(0.5)), {.spp = 1000}));
   EXPECT_NEAR(found.mean, sum, 5 * found.standard_error + 1e-5);  // false alarm 6e-7
   // 16,000 samples; the dimmest lights are drawn with a chance of 0.01, and 160 of 0.08 in standard
   // deviation.

@@ -27,6 +27,27 @@ std::string error_of(Action action) {
   return "";
 }
 
+// A plane of albedo 0.5 at z = 0, seen from the side through a pixel so narrow (0.02 degrees, 2 mm) that all
+// its samples meet the origin as far as lighting is concerned.
+inline const std::string kPlane = R"(
+[camera]
+position = [4, 0, 2]
+look_at = [0, 0, 0]
+fov_deg = 0.1
+[render]
+width = 4
+height = 4
+max_bounces = 1
+[[material]]
+name = "grey"
+type = "diffuse"
+albedo = 0.5
+[[object]]
+type = "plane"
+material = "grey"
+half_size = 2
+)";
+
 // A perfect mirror of reflectance `albedo`.
 class Mirror final : public Bsdf {
  public:

@@ -15,7 +15,7 @@ namespace sunbeam {
 
 class BoundRest {
  public:
-  static constexpr int kScaleCosines = 513, kRatioCosines = 33;  // of an isotropic table
+  static constexpr int kScaleCosines = 513, kRatioCosines = 65;  // of an isotropic table
 
   BoundRest(const FactoredRest& rest, Symmetry symmetry);
 

@@ -39,7 +39,7 @@ class TaskRun {
     if (tasks.empty() || should_stop()) return;
     job_.prepare({tasks.front(), tasks.back() + 1}, settings_.threads);
     // The longest first: at the end no thread waits for one.
-    std::ranges::stable_sort(tasks, std::greater(), [&](std::size_t task) { return job_.cost(task); });
+    std::ranges::sort(tasks, {}, [&](std::size_t task) { return std::pair(-job_.cost(task), task); });
     std::atomic<std::size_t> next = 0;
     run_parallel_tasks(tasks.size(), settings_.threads, {}, [&](std::size_t) {
       const std::size_t task = tasks[next++];

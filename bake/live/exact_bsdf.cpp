@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "bake/optics/vector_clones.h"
+#include "bake/optics/compiler.h"
 #include "sunbeam/core/bracket.h"
 
 namespace sunbeam {

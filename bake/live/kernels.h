@@ -1,4 +1,6 @@
 // The walks compiled for each instruction set, and the choice of one for this machine.
+//
+// The kernel_*.cpp are compiled once for each instruction set, with SUNBEAM_ARCH its name.
 #pragma once
 
 #include "bake/live/layers.h"

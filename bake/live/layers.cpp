@@ -64,7 +64,7 @@ class BelowFilm {
   }
 
  private:
-  using Lanes = Packet<xsimd::default_arch>;
+  using Lanes = Packet<Baseline>;
   static constexpr int kDraws = 4;  // packets
 
   double attenuation(int bin, int j) const { return std::exp(-layers_.tau[j] / cosine_of_bin(bin)); }

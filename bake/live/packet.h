@@ -1,18 +1,18 @@
 // Sixteen numbers worked on side by side: the lanes of a packet are independent walks.
 //
-// A thin layer over xsimd that keeps the number of lanes whatever the width of the machine's registers, so
-// that every instruction set gives the same bits (none of those used fuses multiplications and additions).
-// The same templates also run on plain double: one lane.
+// Packets are made of the compiler's vectors (GCC and Clang) and keep the number of lanes whatever the width
+// of the machine's registers, so that every instruction set gives the same bits (none of those used fuses
+// multiplications and additions). The same templates also run on plain double: one lane.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <type_traits>
-#include <utility>
-#include <xsimd/xsimd.hpp>
 
+#include "bake/optics/compiler.h"
 #include "sunbeam/core/rng.h"
 #include "sunbeam/core/vec.h"
 
@@ -20,15 +20,18 @@ namespace sunbeam::walk {
 
 inline constexpr int kLanes = 16;
 
-// Everything is inlined into the kernels, so that no copy compiled for one instruction set can stand in for
-// another's. Sanitizers would spend minutes on such functions.
-#ifdef __SANITIZE_ADDRESS__
-#define SUNBEAM_INLINE inline
-#define SUNBEAM_FLATTEN
-#else
-#define SUNBEAM_INLINE [[gnu::always_inline]] inline
-#define SUNBEAM_FLATTEN [[gnu::flatten]]
-#endif
+// An instruction set by its registers. Its name is part of every kernel's, which keeps the linker from
+// merging copies for different machines.
+struct Baseline {  // what every machine has (x86-64: SSE2, Arm: NEON)
+  static constexpr int kWidth = 2;
+  using Register = double __attribute__((vector_size(16)));
+  using Bits = std::uint64_t __attribute__((vector_size(16)));
+};
+struct Avx2 {
+  static constexpr int kWidth = 4;
+  using Register = double __attribute__((vector_size(32)));
+  using Bits = std::uint64_t __attribute__((vector_size(32)));
+};
 
 // sum_k c_k x^k of ten or twelve terms, in pairs (Estrin): a third of the waiting of Horner's scheme.
 template <class V, std::size_t kTerms>
@@ -41,51 +44,87 @@ SUNBEAM_INLINE V polynomial(const double (&c)[kTerms], const V& x) {
   return ((pair(0) + pair(2) * x2) + (pair(4) + pair(6) * x2) * x4) + top * x8;
 }
 
-// exp(x) for x <= 0, to 1e-14 relative; 1e-304 below -700. The library's exp converts to integers lane by
-// lane before AVX-512. 2^n e^r with |r| <= ln(2) / 2, Taylor's series for e^r, n put into the exponent bits.
+// One register.
 template <class Arch>
-SUNBEAM_INLINE xsimd::batch<double, Arch> exp_negative(const xsimd::batch<double, Arch>& x) {
-  using Batch = xsimd::batch<double, Arch>;
-  using Bits = xsimd::batch<std::int64_t, Arch>;
-  const Batch round(0x1.8p52 + 1023), clamped = xsimd::max(x, Batch(-700));
-  const Batch shifted = clamped * Batch(std::numbers::log2e) + round;  // low bits: n + 1023
-  const Batch n = shifted - round;
-  const Batch r = (clamped - n * Batch(0x1.62e42feep-1)) - n * Batch(0x1.a39ef35793c76p-33);
-  constexpr double kTerm[] = {
-      1,         1,          1.0 / 2,     1.0 / 6,      1.0 / 24,      1.0 / 120,
-      1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880, 1.0 / 3628800, 1.0 / 39916800};
-  const Batch sum = polynomial<Batch>(kTerm, r);
-  return sum * xsimd::bitwise_cast<Batch>(xsimd::bitwise_cast<Bits>(shifted) << 52);
-}
+struct Batch {
+  static constexpr int kCount = Arch::kWidth;
+  using Register = typename Arch::Register;
+  using Bits = typename Arch::Bits;
 
-// ln(x) for 0 < x <= 1, to 1e-15 relative; about -709 at 0. x = 2^k m with m in [1/sqrt(2), sqrt(2)), then
-// ln(m) = 2 artanh((m - 1) / (m + 1)) by its series; k leaves the exponent bits by way of 2^52 + k.
-template <class Arch>
-SUNBEAM_INLINE xsimd::batch<double, Arch> log_of_share(const xsimd::batch<double, Arch>& x) {
-  using Batch = xsimd::batch<double, Arch>;
-  using Bits = xsimd::batch<std::uint64_t, Arch>;
-  constexpr std::uint64_t kLeast = 0x3fe6a09e667f3bcd;  // 1 / sqrt(2)
-  const Bits shifted = xsimd::bitwise_cast<Bits>(x) + Bits(0x3ff0000000000000 - kLeast);
-  const Batch k =
-      xsimd::bitwise_cast<Batch>((shifted >> 52) | Bits(0x4330000000000000)) - Batch(0x1p52 + 1023);
-  const Batch m = xsimd::bitwise_cast<Batch>((shifted & Bits(0x000fffffffffffff)) + Bits(kLeast));
-  const Batch s = (m - Batch(1)) / (m + Batch(1));
-  constexpr double kTerm[] = {2,        2.0 / 3,  2.0 / 5,  2.0 / 7,  2.0 / 9,
-                              2.0 / 11, 2.0 / 13, 2.0 / 15, 2.0 / 17, 2.0 / 19};
-  return k * Batch(std::numbers::ln2) + s * polynomial<Batch>(kTerm, s * s);
-}
+  Register v;
+
+  Batch() = default;
+  SUNBEAM_INLINE Batch(double value) : v(value - Register{}) {}
+  SUNBEAM_INLINE Batch(const Register& r) : v(r) {}
+
+  template <class F>
+  SUNBEAM_INLINE static Batch generate(F f) {
+    if constexpr (kCount == 2)
+      return Register{f(0), f(1)};
+    else
+      return Register{f(0), f(1), f(2), f(3)};
+  }
+  SUNBEAM_INLINE static Batch load(const double* from) {
+    Batch p;
+    __builtin_memcpy(&p.v, from, sizeof p.v);
+    return p;
+  }
+  SUNBEAM_INLINE void store(double* to) const { __builtin_memcpy(to, &v, sizeof v); }
+
+  SUNBEAM_INLINE friend Batch operator+(const Batch& a, const Batch& b) { return a.v + b.v; }
+  SUNBEAM_INLINE friend Batch operator-(const Batch& a, const Batch& b) { return a.v - b.v; }
+  SUNBEAM_INLINE friend Batch operator*(const Batch& a, const Batch& b) { return a.v * b.v; }
+  SUNBEAM_INLINE friend Batch operator/(const Batch& a, const Batch& b) { return a.v / b.v; }
+  SUNBEAM_INLINE friend Batch operator-(const Batch& a) { return Batch(0) - a; }
+
+  struct Mask {
+    decltype(Register{} > Register{}) bits;
+    SUNBEAM_INLINE friend Mask operator&(const Mask& a, const Mask& b) { return {a.bits & b.bits}; }
+  };
+  SUNBEAM_INLINE friend Mask operator>(const Batch& a, const Batch& b) { return {a.v > b.v}; }
+  SUNBEAM_INLINE friend Mask operator>=(const Batch& a, const Batch& b) { return {a.v >= b.v}; }
+  SUNBEAM_INLINE friend Batch select(const Mask& mask, const Batch& yes, const Batch& no) {
+    return mask.bits ? yes.v : no.v;
+  }
+  SUNBEAM_INLINE friend Batch max(const Batch& a, const Batch& b) { return a.v > b.v ? a.v : b.v; }
+  SUNBEAM_INLINE friend Batch min(const Batch& a, const Batch& b) { return a.v < b.v ? a.v : b.v; }
+  SUNBEAM_INLINE friend Batch sqrt(const Batch& a) {
+    return generate([&](int lane) { return __builtin_sqrt(a.v[lane]); });
+  }
+
+  // exp(x) for x <= 0, to 1e-14 relative; 1e-304 below -700. x = n ln(2) + r with |r| <= ln(2) / 2, Taylor's
+  // series for e^r, and n goes into the exponent bits.
+  SUNBEAM_INLINE friend Batch exp_negative(const Batch& x) {
+    const Batch round(0x1.8p52 + 1023), clamped = max(x, Batch(-700));
+    const Batch shifted = clamped * Batch(std::numbers::log2e) + round;  // low bits: n + 1023
+    const Batch n = shifted - round;
+    const Batch r = (clamped - n * Batch(0x1.62e42feep-1)) - n * Batch(0x1.a39ef35793c76p-33);
+    constexpr double kTerm[] = {
+        1,         1,          1.0 / 2,     1.0 / 6,      1.0 / 24,      1.0 / 120,
+        1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880, 1.0 / 3628800, 1.0 / 39916800};
+    return polynomial<Batch>(kTerm, r) * Batch((Register)((Bits)shifted.v << 52));
+  }
+
+  // ln(x) for 0 < x <= 1, to 1e-15 relative; about -709 at 0. x = 2^k m with m in [1/sqrt(2), sqrt(2)), then
+  // ln(m) = 2 artanh((m - 1) / (m + 1)) by its series; k leaves the exponent bits by way of 2^52 + k.
+  SUNBEAM_INLINE friend Batch log_of_share(const Batch& x) {
+    constexpr std::uint64_t kLeast = 0x3fe6a09e667f3bcd;  // 1 / sqrt(2)
+    const Bits shifted = (Bits)x.v + (0x3ff0000000000000 - kLeast);
+    const Batch k = Batch((Register)((shifted >> 52) | 0x4330000000000000)) - Batch(0x1p52 + 1023);
+    const Batch m = (Register)((shifted & 0x000fffffffffffff) + kLeast);
+    const Batch s = (m - Batch(1)) / (m + Batch(1));
+    constexpr double kTerm[] = {2,        2.0 / 3,  2.0 / 5,  2.0 / 7,  2.0 / 9,
+                                2.0 / 11, 2.0 / 13, 2.0 / 15, 2.0 / 17, 2.0 / 19};
+    return k * Batch(std::numbers::ln2) + s * polynomial<Batch>(kTerm, s * s);
+  }
+};
 
 // Two halves, each a batch or again two halves: members, not an array, so that compilers keep them in
 // registers.
 template <class Arch, int kCount = kLanes>
 struct Packet {
-  using Batch = xsimd::batch<double, Arch>;
-  using Register = typename Batch::register_type;
   static constexpr int kHalf = kCount / 2;
-  static_assert(static_cast<int>(Batch::size) <= kHalf);
-  static constexpr bool kIsPair = static_cast<int>(Batch::size) == kHalf;
-  using Half = typename std::conditional_t<kIsPair, std::type_identity<Batch>,
-                                           std::type_identity<Packet<Arch, kHalf>>>::type;
+  using Half = std::conditional_t<kHalf == Arch::kWidth, Batch<Arch>, Packet<Arch, kHalf>>;
 
   Half low, high;
 
@@ -96,22 +135,12 @@ struct Packet {
   // f(0), f(1), ...; not by way of memory, which would wait for many small stores.
   template <class F>
   SUNBEAM_INLINE static Packet generate(F f) {
-    if constexpr (!kIsPair)
-      return {Half::generate(f), Half::generate([&](int lane) { return f(lane + kHalf); })};
-    else if constexpr (kHalf == 2)
-      return {Register{f(0), f(1)}, Register{f(2), f(3)}};
-    else
-      return {Register{f(0), f(1), f(2), f(3)}, Register{f(4), f(5), f(6), f(7)}};
+    return {Half::generate(f), Half::generate([&](int lane) { return f(lane + kHalf); })};
   }
-  SUNBEAM_INLINE static Packet load(const double* v) { return {load_half(v), load_half(v + kHalf)}; }
+  SUNBEAM_INLINE static Packet load(const double* v) { return {Half::load(v), Half::load(v + kHalf)}; }
   SUNBEAM_INLINE void store(double* v) const {
-    if constexpr (kIsPair) {
-      low.store_unaligned(v);
-      high.store_unaligned(v + kHalf);
-    } else {
-      low.store(v);
-      high.store(v + kHalf);
-    }
+    low.store(v);
+    high.store(v + kHalf);
   }
 
   SUNBEAM_INLINE friend Packet operator+(const Packet& a, const Packet& b) {
@@ -131,7 +160,7 @@ struct Packet {
   SUNBEAM_INLINE Packet& operator*=(const Packet& o) { return *this = *this * o; }
 
   struct Mask {
-    decltype(std::declval<Half>() > std::declval<Half>()) low, high;
+    typename Half::Mask low, high;
     SUNBEAM_INLINE friend Mask operator&(const Mask& a, const Mask& b) {
       return {a.low & b.low, a.high & b.high};
     }
@@ -159,21 +188,13 @@ struct Packet {
     return {min(a.low, b.low), min(a.high, b.high)};
   }
 
-  // The same order of additions on every machine.
+  // The order of additions is the same on every machine.
   SUNBEAM_INLINE friend double mean_of_lanes(const Packet& a) {
     double v[kCount];
     a.store(v);
     double sum = 0;
     for (int i = 0; i < kCount / 2; ++i) sum += v[i] + v[i + kCount / 2];
     return sum / kCount;
-  }
-
- private:
-  SUNBEAM_INLINE static Half load_half(const double* v) {
-    if constexpr (kIsPair)
-      return Batch::load_unaligned(v);
-    else
-      return Half::load(v);
   }
 };
 

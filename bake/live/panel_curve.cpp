@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "bake/optics/vector_clones.h"
+#include "bake/optics/compiler.h"
 #include "sunbeam/core/vec.h"
 
 namespace sunbeam {
@@ -39,6 +39,16 @@ constexpr Square<kCount> make_powers() {
   return t;
 }
 
+// Not a member: callers of the header must not see that it exists more than once.
+SUNBEAM_VECTOR_CLONES
+void write_polynomials(const double* c, std::size_t lanes, double s, double* values) {
+  for (std::size_t k = 0; k < lanes; k += 4) {
+    std::array<double, 4> block;
+    for (std::size_t j = 0; j < 4; ++j) block[j] = panel_polynomial(c + k + j, lanes, s);
+    std::copy(block.begin(), block.end(), values + k);
+  }
+}
+
 }  // namespace
 
 PanelCurve::PanelCurve(std::size_t count, const Functions& functions, const Accuracy& accuracy,
@@ -59,13 +69,8 @@ PanelCurve::PanelCurve(std::size_t count, const Functions& functions, const Accu
   }
 }
 
-SUNBEAM_VECTOR_CLONES
 void PanelCurve::polynomials(const double* c, double s, double* values) const {
-  for (std::size_t k = 0; k < lanes_; k += 4) {
-    std::array<double, 4> block;
-    for (std::size_t j = 0; j < 4; ++j) block[j] = polynomial(c + k + j, lanes_, s);
-    std::copy(block.begin(), block.end(), values + k);
-  }
+  write_polynomials(c, lanes_, s, values);
 }
 
 void PanelCurve::fit(double low, double high, const Functions& functions, const Accuracy& accuracy) {

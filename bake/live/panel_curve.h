@@ -13,6 +13,13 @@
 
 namespace sunbeam {
 
+// Of degree 7 by Estrin's scheme: short chains of operations. The coefficients are `stride` apart.
+inline double panel_polynomial(const double* c, std::size_t stride, double s) {
+  const double s2 = s * s, s4 = s2 * s2;
+  return ((c[0] + s * c[stride]) + s2 * (c[2 * stride] + s * c[3 * stride])) +
+         s4 * ((c[4 * stride] + s * c[5 * stride]) + s2 * (c[6 * stride] + s * c[7 * stride]));
+}
+
 class PanelCurve {
  public:
   // The two last coefficients together: at most relative * (least magnitude at the panel's nodes) + absolute.
@@ -41,7 +48,7 @@ class PanelCurve {
     const double s = (x - panels_[p].centre) * panels_[p].scale;
     const double* c = coefficients_.data() + p * kCoefficients * lanes_;
     if (lanes_ == 1)
-      values[0] = polynomial(c, 1, s);
+      values[0] = panel_polynomial(c, 1, s);
     else
       polynomials(c, s, values);
   }
@@ -53,12 +60,6 @@ class PanelCurve {
     double end, centre, scale;  // s = (x - centre) scale in [-1, 1]
   };
 
-  // Estrin's scheme: short chains of operations. The coefficients are `stride` apart.
-  static double polynomial(const double* c, std::size_t stride, double s) {
-    const double s2 = s * s, s4 = s2 * s2;
-    return ((c[0] + s * c[stride]) + s2 * (c[2 * stride] + s * c[3 * stride])) +
-           s4 * ((c[4 * stride] + s * c[5 * stride]) + s2 * (c[6 * stride] + s * c[7 * stride]));
-  }
   void polynomials(const double* c, double s, double* values) const;
   void fit(double low, double high, const Functions& functions, const Accuracy& accuracy);
 

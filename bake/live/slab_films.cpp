@@ -3,7 +3,7 @@
 #include <limits>
 #include <set>
 
-#include "bake/optics/vector_clones.h"
+#include "bake/optics/compiler.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/text.h"
 

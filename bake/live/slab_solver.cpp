@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "bake/live/microsurface.h"
+#include "bake/optics/compiler.h"
 #include "bake/optics/quadrature.h"
-#include "bake/optics/vector_clones.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/text.h"
 
@@ -90,15 +90,15 @@ void add_facet(const double* even, const double* odd, int nodes, double azimuth,
 struct ModeResponse {
   Matrix down, slab;
 };
-SUNBEAM_VECTOR_CLONES SUNBEAM_FLATTEN ModeResponse respond(const Matrix& back, const Matrix& r, Matrix enters,
-                                                           const Matrix& sees) {
+SUNBEAM_FLAT_VECTOR_CLONES ModeResponse respond(const Matrix& back, const Matrix& r, Matrix enters,
+                                                const Matrix& sees) {
   ModeResponse response{solve(one_minus(multiply(back, r)), std::move(enters)), {}};
   response.slab = multiply(multiply(sees, r), response.down);
   return response;
 }
 
 // Two of a layer of reflection r and transmission t.
-SUNBEAM_VECTOR_CLONES SUNBEAM_FLATTEN void double_layer(Matrix& r, Matrix& t) {
+SUNBEAM_FLAT_VECTOR_CLONES void double_layer(Matrix& r, Matrix& t) {
   const Matrix x = solve(one_minus(multiply(r, r)), t), tx = multiply(t, multiply(r, x));
   t = multiply(t, x);
   for (int i = 0; i < r.size(); ++i) add_scaled(1, tx.row(i), r.size(), r.row(i));

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "bake/optics/vector_clones.h"
+#include "bake/optics/compiler.h"
 
 namespace sunbeam {
 namespace {

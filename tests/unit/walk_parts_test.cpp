@@ -9,7 +9,7 @@
 namespace sunbeam::walk {
 namespace {
 
-using Lanes = Packet<xsimd::default_arch>;
+using Lanes = Packet<Baseline>;
 
 template <class F>
 Lanes lanes_of(F f) {

@@ -1,12 +1,12 @@
 #include "runtime/tracer/embree_scene.h"
 
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include <array>
 #include <limits>
 #include <vector>
 
+#include "runtime/tracer/embree_api.h"
 #include "runtime/tracer/huge_pages.h"
 #include "sunbeam/core/error.h"
 
@@ -337,9 +337,7 @@ std::optional<SurfaceHit> EmbreeScene::intersect(const Ray& ray) const {
   RTCRayHit query;
   set_ray(query.ray, ray, kInfinity);
   query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(impl_->scene.get(), &context, &query);
+  intersect_one(impl_->scene.get(), query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
   const Surface& surface = impl_->surfaces[query.hit.geomID];
@@ -350,9 +348,7 @@ std::optional<SurfaceHit> EmbreeScene::intersect(const Ray& ray) const {
 bool EmbreeScene::occluded(const Ray& ray, double distance) const {
   RTCRay query;
   set_ray(query, ray, static_cast<float>(distance * kShadowFraction));
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(impl_->scene.get(), &context, &query);
+  occluded_one(impl_->scene.get(), query);
   return query.tfar < 0;
 }
 

@@ -1,4 +1,4 @@
-// Visibility and nearest hits through Embree. No other file of Sunbeam includes Embree.
+// Visibility and nearest hits through Embree. No file but embree_* includes Embree.
 #pragma once
 
 #include <functional>

@@ -4,8 +4,6 @@
 // sampled and never met by chance. Nothing else is kept or computed.
 #pragma once
 
-#include <embree3/rtcore.h>
-
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -13,6 +11,7 @@
 #include <numbers>
 #include <variant>
 
+#include "runtime/tracer/embree_api.h"
 #include "runtime/tracer/scene.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/rng.h"
@@ -48,12 +47,10 @@ class EmbreeCeiling {
   // One path along `direction` from the camera; adds what it found.
   void trace(const Vec3& direction, Rng& rng, Counts& counts) const {
     std::array<float, 3> origin = to_float(scene_.camera.position), along = to_float(direction);
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     float weight = 1;
     for (int bounce = 0;; ++bounce) {
       RTCRayHit query = to_embree(origin, along);
-      rtcIntersect1(embree_, &context, &query);
+      intersect_one(embree_, query);
       ++counts.rays;
       if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
         counts.radiance += weight * static_cast<float>(scene_.environment.color.r);
@@ -62,7 +59,7 @@ class EmbreeCeiling {
       if (query.hit.geomID == 0 || bounce == scene_.render.max_bounces) return;
       for (std::size_t k = 0; k < 3; ++k) origin[k] += query.ray.tfar * along[k];
       const std::array<float, 3> normal = facing_normal(query.hit, along);
-      counts.radiance += weight * light_from(origin, normal, rng, context, counts);
+      counts.radiance += weight * light_from(origin, normal, rng, counts);
       along = cosine_direction(normal, uniform(rng), uniform(rng));
       weight *= albedo_;
       if (bounce < scene_.render.roulette_after) continue;
@@ -111,14 +108,14 @@ class EmbreeCeiling {
   }
 
   float light_from(const std::array<float, 3>& from, const std::array<float, 3>& normal, Rng& rng,
-                   RTCIntersectContext& context, Counts& counts) const {
+                   Counts& counts) const {
     const float s = uniform(rng), t = uniform(rng);
     std::array<float, 3> to_light;
     for (std::size_t k = 0; k < 3; ++k) to_light[k] = corner_[k] + s * edge_u_[k] + t * edge_v_[k] - from[k];
     const float cosine = dot(normal, to_light), light_cosine = -dot(light_normal_, to_light);
     if (cosine <= 0 || light_cosine <= 0) return 0;
     RTCRay shadow = ray(from, to_light, 0.9999f);
-    rtcOccluded1(embree_, &context, &shadow);
+    occluded_one(embree_, shadow);
     ++counts.rays;
     if (shadow.tfar < 0) return 0;
     const float distance2 = dot(to_light, to_light);

@@ -78,9 +78,9 @@ class PointCheck {
     if (table.symmetry == Symmetry::anisotropic) point_.phi_i = 2 * kPi * rng_.uniform();
     wi_ = direction_from_cosine(point_.cos_i, point_.phi_i);
     if (cells)
-      bsdf_.emplace(table_around(table, *cells, point_.parameters), point_.parameters, OutsideGrid::refuse);
+      bind(table_around(table, *cells, point_.parameters));
     else
-      bsdf_.emplace(table, point_.parameters, OutsideGrid::refuse);
+      bind(table);
     wavelengths_ = spectrum.wavelengths(bsdf_->material());
     model_.emplace(bsdf_->material(), wavelengths_);
   }
@@ -96,6 +96,11 @@ class PointCheck {
   }
 
  private:
+  // What a table states of itself must not depend on the processor.
+  void bind(const Table& table) {
+    bsdf_.emplace(table, point_.parameters, OutsideGrid::refuse, Arithmetic::reproducible);
+  }
+
   // The number of walks follows the floor that a pilot expects, not that of the runs themselves: stopping at
   // runs that happen to agree would report one that is too low.
   std::vector<Rgb> walked_rest() {

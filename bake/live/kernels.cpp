@@ -1,5 +1,7 @@
 #include "bake/live/kernels.h"
 
+#include "sunbeam/core/processor.h"
+
 namespace sunbeam::walk {
 
 template <class Arch>
@@ -32,8 +34,8 @@ const Kernels kAvx2Kernels = kernels_for<Avx2>("avx2");
 
 const Kernels& best_kernels() {
 #ifdef SUNBEAM_AVX2_KERNELS
-  static const bool has_avx2 = __builtin_cpu_supports("avx2");
-  if (has_avx2) return kAvx2Kernels;
+  static const bool is_avx2 = __builtin_cpu_supports("avx2") && !baseline_is_forced();
+  if (is_avx2) return kAvx2Kernels;
 #endif
   return kBaselineKernels;
 }

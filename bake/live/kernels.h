@@ -31,7 +31,7 @@ extern const Kernels kBaselineKernels;
 extern const Kernels kAvx2Kernels;
 #endif
 
-// The fastest that this machine runs.
+// The fastest that this machine runs, or the baseline if SUNBEAM_KERNELS asks for it (core/processor.h).
 const Kernels& best_kernels();
 
 }  // namespace sunbeam::walk

@@ -40,18 +40,18 @@ class FactoredAzimuthMean {
 
 }  // namespace
 
-BoundTable::BoundTable(const Table& table, const Material& material)
+BoundTable::BoundTable(const Table& table, const Material& material, Arithmetic arithmetic)
     : material_(material),
       symmetry_(table.symmetry),
       normals_(material.roughness),
       facets_(material.roughness),
       smooth_(material.is_smooth()) {
-  take_rest(table);
+  take_rest(table, arithmetic);
   prepare_sampling();
   prepare_pairs();
 }
 
-void BoundTable::take_rest(const Table& table) {
+void BoundTable::take_rest(const Table& table, Arithmetic arithmetic) {
   ends_.resize(BoundRest::kScaleCosines + 1);
   film_.resize(kFilmNodes + 1);
   const auto cosine_of = [](int node) { return static_cast<double>(node) / (kFilmNodes - 1); };
@@ -62,7 +62,8 @@ void BoundTable::take_rest(const Table& table) {
           std::array{material_.film_thickness_nm, material_.base_ior, cosine_of(i)}));
     return;
   }
-  const FactoredRest factored(table, material_);
+  const FactoredRest factored(
+      table, material_, arithmetic == Arithmetic::fastest ? best_film_kernels() : baseline_film_kernels());
   std::vector<float> cosines(kFilmNodes);
   std::vector<FloatRgb> folded(kFilmNodes);
   for (int i = 0; i < kFilmNodes; ++i) cosines[i] = static_cast<float>(cosine_of(i));

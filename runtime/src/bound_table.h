@@ -20,7 +20,7 @@ namespace sunbeam {
 class BoundTable {
  public:
   // `material` is that of the table with the parameters of the point, which lie in the grid.
-  BoundTable(const Table& table, const Material& material);
+  BoundTable(const Table& table, const Material& material, Arithmetic arithmetic);
 
   struct Parts {
     Color4 first, rest;  // 1/sr
@@ -68,7 +68,7 @@ class BoundTable {
   Vec3 draw_first(const Viewer& viewer, int row, const Vec3& wo, Rng& rng) const;
   Vec3 draw_rest(int row, Rng& rng) const;
 
-  void take_rest(const Table& table);
+  void take_rest(const Table& table, Arithmetic arithmetic);
   void prepare_sampling();
   void prepare_pairs();
   struct Moments {

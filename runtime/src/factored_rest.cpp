@@ -14,10 +14,10 @@ double cosine_at(std::size_t k) { return (static_cast<double>(k / 4) + kNode[k %
 
 }  // namespace
 
-FactoredRest::FactoredRest(const Table& table, const Material& material)
+FactoredRest::FactoredRest(const Table& table, const Material& material, const FilmKernels& kernels)
     : material_(material),
       wavelengths_(table.factors.wavelengths),
-      film_(wavelengths_, material.exterior_ior, material.film_ior) {
+      film_(wavelengths_, material.exterior_ior, material.film_ior, kernels) {
   for (std::size_t k = 0; k < wavelengths_.size(); ++k) {
     depth_.push_back(material.optical_depth() * wavelengths_.absorption[k]);
     gain_.push_back(material.radiance_scale() * wavelengths_.albedo[k] * kInvPi);

@@ -12,7 +12,8 @@ namespace sunbeam {
 class FactoredRest {
  public:
   // `material` is that of the table with the parameters of the point, which lie in the grid.
-  FactoredRest(const Table& table, const Material& material);
+  FactoredRest(const Table& table, const Material& material,
+               const FilmKernels& kernels = best_film_kernels());
 
   // What the rest needs to know of one direction.
   struct End {

@@ -7,6 +7,7 @@
 
 #include "film_kernels.h"
 #include "sunbeam/core/error.h"
+#include "sunbeam/core/processor.h"
 
 namespace sunbeam {
 namespace {
@@ -93,7 +94,13 @@ std::span<const FilmKernels* const> supported_film_kernels() {
 #endif
 }
 
-const FilmKernels& best_film_kernels() { return *supported_film_kernels().back(); }
+const FilmKernels& best_film_kernels() {
+  static const FilmKernels& best =
+      baseline_is_forced() ? baseline_film_kernels() : *supported_film_kernels().back();
+  return best;
+}
+
+const FilmKernels& baseline_film_kernels() { return kBaselineFilmKernels; }
 
 FilmSpectrum::FilmSpectrum(const Wavelengths& wavelengths, double exterior_ior, double film_ior,
                            const FilmKernels& kernels)

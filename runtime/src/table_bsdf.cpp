@@ -22,9 +22,10 @@ Parameters checked(const Table& table, const Parameters& parameters, OutsideGrid
 
 }  // namespace
 
-TableBsdf::TableBsdf(const Table& table, const Parameters& parameters, OutsideGrid outside)
-    : bound_(std::make_shared<BoundTable>(table,
-                                          checked(table, parameters, outside).applied_to(table.material))) {}
+TableBsdf::TableBsdf(const Table& table, const Parameters& parameters, OutsideGrid outside,
+                     Arithmetic arithmetic)
+    : bound_(std::make_shared<BoundTable>(
+          table, checked(table, parameters, outside).applied_to(table.material), arithmetic)) {}
 
 TableBsdf Table::bind(const Parameters& parameters, OutsideGrid outside) const {
   return TableBsdf(*this, parameters, outside);

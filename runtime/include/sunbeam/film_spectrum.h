@@ -41,8 +41,11 @@ struct FilmWavelengths {
 
 struct FilmKernels;  // compiled for one instruction set, see film_kernels.h
 
-// The fastest that this machine runs; decided once per process.
+// The fastest that this machine runs, or the baseline if SUNBEAM_KERNELS asks for it (core/processor.h);
+// decided once per process.
 const FilmKernels& best_film_kernels();
+// What every machine runs, with the same bits on each.
+const FilmKernels& baseline_film_kernels();
 
 // A film of index n1 under an exterior of index n0. Constant after construction: threads may share it.
 class FilmSpectrum {

@@ -56,6 +56,10 @@ class TableBsdf;
 // What becomes of parameters beyond those of the table.
 enum class OutsideGrid { clamp, refuse };
 
+// How binding folds the film over wavelengths: with the fastest instructions of this processor, or with bits
+// that are the same on every one, for errors that a table states. They differ by 1e-6 (film_spectrum.h).
+enum class Arithmetic { fastest, reproducible };
+
 struct Table {
   Material material;  // fixed values, and defaults for the parameters
   Symmetry symmetry = Symmetry::isotropic;

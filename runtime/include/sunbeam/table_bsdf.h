@@ -22,7 +22,8 @@ class BoundTable;
 class TableBsdf final : public Bsdf {
  public:
   // Slices the table at `parameters`. Outside the grid they are clamped to it, or Error is thrown.
-  TableBsdf(const Table& table, const Parameters& parameters, OutsideGrid outside);
+  TableBsdf(const Table& table, const Parameters& parameters, OutsideGrid outside,
+            Arithmetic arithmetic = Arithmetic::fastest);
 
   const Material& material() const;
 

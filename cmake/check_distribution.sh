@@ -1,96 +1,88 @@
 #!/usr/bin/env bash
-# Runs the README's two commands on a bare Debian: cmake/check_distribution.sh SUITE [COMPILER] [STEP...]
+# Runs the README's commands on a bare Debian: cmake/check_distribution.sh SUITE [COMPILER [STEP...]]
 #   SUITE     bookworm or trixie
-#   COMPILER  gcc (the default) or clang: the newest packaged one
-#   STEP      demo, quick, all, unit (build everything, run the unit tests); the default is demo quick
-# Needs root and debootstrap. ROOTS=folder keeps the roots there (default build/distributions): the next run
-# of the same suite begins with its packages. It prints the time of every step; the exit code is 0 if all passed.
+#   COMPILER  gcc (the default), or clang: the newest that the suite has
+#   STEP      demo; quick: cmake/test.sh; all: cmake/test.sh --all; unit: builds everything, runs the unit tests.
+#             Without any: demo quick
+# Needs root and debootstrap. The roots stay in ROOTS (default build/distributions), so that a second run of a suite
+# begins with its packages. Prints how long each step took; the exit code is 0 if all passed. Compilers warn as errors.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-usage() {
-  sed -n '2,7s/^# //p' "$0" >&2
+refuse() {
+  echo "check_distribution.sh: $1" >&2
   exit 2
 }
 
-[ $# -ge 1 ] || usage
-suite=$1 compiler=${2:-gcc}
-shift $(($# < 2 ? $# : 2))
-steps=("$@")
+suite=${1:-} compiler=${2:-gcc}
+steps=("${@:3}")
 [ ${#steps[@]} -gt 0 ] || steps=(demo quick)
-case $suite in bookworm | trixie) ;; *) usage ;; esac
-case $compiler in gcc | clang) ;; *) usage ;; esac
+case $suite in bookworm | trixie) ;; *) refuse "found suite '$suite'; allowed are bookworm and trixie" ;; esac
+case $compiler in gcc | clang) ;; *) refuse "found compiler '$compiler'; allowed are gcc and clang" ;; esac
 for step in "${steps[@]}"; do
-  case $step in demo | quick | all | unit) ;; *) usage ;; esac
+  case $step in demo | quick | all | unit) ;; *) refuse "found step '$step'; allowed are demo, quick, all and unit" ;; esac
 done
-if [ "$(id -u)" != 0 ] || ! command -v debootstrap >/dev/null; then
-  echo "check_distribution.sh: needs root and debootstrap" >&2
-  exit 2
-fi
+[ "$(id -u)" = 0 ] || refuse "needs root"
+command -v debootstrap >/dev/null || refuse "needs the package debootstrap"
 
-checkout=$PWD
 roots=${ROOTS:-build/distributions}
 mkdir -p "$roots"
 root=$(realpath "$roots")/$suite
+checkout=/sunbeam-$compiler
+settings=(HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive)
 
-in_root() { chroot "$root" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 CI="${CI:-}" "$@"; }
+in_root() { chroot "$root" env -i "${settings[@]}" "$@"; }
 
-# timed NAME COMMAND...: says how long the command took.
+times=()
+# timed NAME COMMAND...: remembers how long the command took.
 timed() {
-  local name=$1 start=$SECONDS
-  shift
-  "$@"
-  times+="$(printf '%-28s %d min %02d s' "$name" $(((SECONDS - start) / 60)) $(((SECONDS - start) % 60)))"$'\n'
+  local start=$SECONDS
+  "${@:2}"
+  times+=("$(printf '%-8s %2d min %02d s' "$1" $(((SECONDS - start) / 60)) $(((SECONDS - start) % 60)))")
 }
 
 unmount() {
   local place
-  for place in dev/shm dev proc; do
+  for place in dev proc; do
     if mountpoint -q "$root/$place"; then umount -l "$root/$place"; fi
   done
 }
 
-# A bare system with the host's package sources, moved to this suite.
+# A bare system whose packages come from where the host's do.
 make_root() {
-  [ -e "$root/etc/debian_version" ] ||
-    debootstrap --variant=minbase --include=ca-certificates "$suite" "$root"
-  rm -rf "$root/etc/apt"
-  cp -r /etc/apt "$root/etc/apt"
-  rm -f "$root/etc/apt/sources.list" "$root"/etc/apt/sources.list.d/* "$root"/etc/apt/preferences.d/*
-  local mirror
-  mirror=$(grep -hoE 'https?://[^ ]*/debian/? ' /etc/apt/sources.list /etc/apt/sources.list.d/*.list 2>/dev/null |
-    head -n 1 || true)
-  echo "deb ${mirror:-http://deb.debian.org/debian} $suite main" >"$root/etc/apt/sources.list"
+  [ -e "$root/etc/debian_version" ] || debootstrap --variant=minbase --include=ca-certificates "$suite" "$root"
+  cp /etc/apt/apt.conf.d/*proxy* /etc/apt/apt.conf.d/99* "$root/etc/apt/apt.conf.d/" 2>/dev/null || true
   cp /etc/resolv.conf "$root/etc/resolv.conf"
+  trap unmount EXIT
+  mount --bind /dev "$root/dev"
+  mount -t proc proc "$root/proc"
+  in_root apt-get update -q
+  in_root apt-get install -q -y --no-install-recommends git
+  rm -rf "${root:?}$checkout"
+  git clone -q . "$root$checkout"
 }
 
-trap unmount EXIT
-times=""
-timed "system" make_root
-mount --bind /dev "$root/dev"
-mount -t proc proc "$root/proc"
-
-in_root apt-get update -q >/dev/null
-in_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends git >/dev/null
-rm -rf "$root/sunbeam"
-git clone -q "$checkout" "$root/sunbeam"
-
-settings=()
-if [ "$compiler" = clang ]; then
-  # The newest that the suite has.
-  clang=$(in_root apt-cache pkgnames clang- | grep -E '^clang-[0-9]+$' | sort -t- -k2n | tail -n 1)
-  in_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "$clang" >/dev/null
-  settings=(CXX="${clang/clang/clang++}")
-fi
+choose_compiler() {
+  [ "$compiler" = clang ] || return 0
+  local newest
+  newest=$(in_root apt-cache search --names-only '^clang-[0-9]+$' | cut -d' ' -f1 | sort -t- -k2n | tail -n 1)
+  in_root apt-get install -q -y --no-install-recommends "$newest"
+  settings+=("CXX=${newest/clang/clang++}")
+}
 
 run_step() {
   case $1 in
-    demo) in_root "${settings[@]}" bash /sunbeam/cmake/demo.sh ;;
-    quick) in_root "${settings[@]}" bash /sunbeam/cmake/test.sh -DSUNBEAM_WERROR=ON ;;
-    all) in_root "${settings[@]}" bash /sunbeam/cmake/test.sh --all -DSUNBEAM_WERROR=ON ;;
-    unit) in_root "${settings[@]}" bash /sunbeam/cmake/test.sh --label unit -DSUNBEAM_WERROR=ON ;;
+    demo) in_root bash "$checkout/cmake/demo.sh" ;;
+    quick) in_root bash "$checkout/cmake/test.sh" -DSUNBEAM_WERROR=ON ;;
+    all) in_root bash "$checkout/cmake/test.sh" --all -DSUNBEAM_WERROR=ON ;;
+    unit) in_root bash "$checkout/cmake/test.sh" --label unit -DSUNBEAM_WERROR=ON ;;
   esac
 }
+
+timed system make_root
+choose_compiler
 for step in "${steps[@]}"; do timed "$step" run_step "$step"; done
 
-printf '\n== %s with %s, %s\n%s' "$suite" "$compiler" "$(in_root cat /etc/debian_version)" "$times"
+printf '\n== Debian %s, %s\n' "$(cat "$root/etc/debian_version")" \
+  "$(in_root bash -c '"${CXX:-g++}" --version | head -n 1')"
+printf '%s\n' "${times[@]}"

@@ -43,9 +43,9 @@ std::string parts_hash(const TableParts& parts, const DenseCells* cells = nullpt
   return content_hash(digest);
 }
 
-const std::string& require(const Attributes& attributes, const std::string& key) {
-  const auto at = attributes.find(key);
-  if (at == attributes.end()) throw Error("attribute '" + key + "' is missing");
+const std::string& require(const Attributes& attributes, std::string_view key) {
+  const auto at = attributes.find(std::string(key));
+  if (at == attributes.end()) throw Error("attribute '" + std::string(key) + "' is missing");
   return at->second;
 }
 

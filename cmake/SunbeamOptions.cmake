@@ -17,8 +17,11 @@ endif()
 
 # -Wrestrict has false alarms on std::string in GCC 12 (bug 105651).
 # errno and floating-point traps are never read; without them sqrt and friends inline.
-add_compile_options(-Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> -fno-math-errno -fno-trapping-math)
+# On Arm compilers would fuse multiplications with additions, and numbers would not be those of x86-64.
+if(NOT MSVC)
+  add_compile_options(-Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> -fno-math-errno -fno-trapping-math -ffp-contract=off)
+endif()
 option(SUNBEAM_WERROR "Treat warnings as errors" OFF)
 if(SUNBEAM_WERROR)
   add_compile_options(-Werror)

@@ -3,8 +3,11 @@
 // are in doubles, for a float of an azimuth is off by 2e-7 of a radian.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "sunbeam/axis.h"

@@ -65,8 +65,7 @@ class BoundRest {
     const Color4 low = sunbeam::lerp(row, at_i), high = sunbeam::lerp(row + coarse_.cosines, at_i);
     return scale * (low + at_o.upper_weight * (high - low));
   }
-  [[gnu::noinline]] Color4 anisotropic(const Vec3& wo, const Vec3& wi, const Cosine& o,
-                                       const Cosine& i) const;
+  SUNBEAM_NOINLINE Color4 anisotropic(const Vec3& wo, const Vec3& wi, const Cosine& o, const Cosine& i) const;
   Color4 scale_at(const Cosine& at, float phi) const;
 
   Grid fine_, coarse_;

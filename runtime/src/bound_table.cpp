@@ -252,7 +252,7 @@ struct BoundTable::Places {
 
 // What eval_pdf() and sample() know of several lights of one viewer, all above the horizon.
 template <int kLights>
-[[gnu::always_inline]] inline std::array<BoundTable::Parts, kLights> BoundTable::parts(
+SUNBEAM_INLINE std::array<BoundTable::Parts, kLights> BoundTable::parts(
     const Viewer& viewer, const Vec3& wo, const std::array<Vec3, kLights>& wi) const {
   constexpr float kPerSolidAngle = static_cast<float>(kInvPi / 4);  // d(root) / d(cosine) / (2 pi)
   const FacetLights<kLights> lights(facets_, viewer.facets, wo, wi.data());
@@ -264,7 +264,7 @@ template <int kLights>
   const Color4* row = pairs_.data() + viewer.pairs.lower * kPairs;
 
   std::array<Parts, kLights> result;
-#pragma GCC unroll 4
+  SUNBEAM_UNROLL_4
   for (int k = 0; k < kLights; ++k) {
     const Color4 low = lerp(row, {at.pair, k}), high = lerp(row + kPairs, {at.pair, k});
     const Color4 ratio = low + viewer.pairs.upper_weight * (high - low);
@@ -300,8 +300,7 @@ inline Vec3 BoundTable::draw_rest(int row, Rng& rng) const {
 }
 
 // One number, `lot`, has chosen the technique; what is left of it chooses the row.
-[[gnu::always_inline]] inline Vec3 BoundTable::draw(const Viewer& viewer, float lot, const Vec3& wo,
-                                                    Rng& rng) const {
+SUNBEAM_INLINE Vec3 BoundTable::draw(const Viewer& viewer, float lot, const Vec3& wo, Rng& rng) const {
   const float chance = viewer.first_chance(), upper = viewer.rows.upper_weight;
   if (lot < chance) return draw_first(viewer, viewer.rows.lower + (lot < chance * upper), wo, rng);
   return draw_rest(viewer.rows.lower + (lot - chance < (1 - chance) * upper), rng);
@@ -347,7 +346,7 @@ void BoundTable::eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f
   const auto take_four = [&](const Vec3* four, Rgb* values) {
     const FacetLights<4> lights(facets_, viewer.facets, wo, four);
     const Places at(lights);
-#pragma GCC unroll 4
+    SUNBEAM_UNROLL_4
     for (int k = 0; k < 4; ++k) {
       Color4 value = lerp(ends_.data(), {at.end, k}) * lerp(ratios.data(), {at.pair, k});
       if (!smooth_) value += lights.lobe[k] * lerp(film_.data(), {at.film, k});

@@ -1,5 +1,7 @@
 #include "sunbeam/core/color_space.h"
 
+#include <string>
+
 #include "sunbeam/core/error.h"
 
 namespace sunbeam {

@@ -133,7 +133,11 @@ struct FacetLights {
 
   FacetLights(const Facets& facets, const FacetViewer& viewer, const Coordinate& cx, const Coordinate& cy,
               const Coordinate& cz)
-      : x(cx.half), y(cy.half), z(cz.half), cosine(cz.light > 0 ? cz.light : Color4{}), root(sqrt4(cosine)) {
+      : x(cx.half),
+        y(cy.half),
+        z(cz.half),
+        cosine(select(cz.light > 0, cz.light, Color4{})),
+        root(sqrt4(cosine)) {
     const Color4 x2 = x * x, y2 = y * y, z2 = z * z, l2 = x2 + y2 + z2;
     half_cosine = 0.5f * sqrt4(l2);
     l2_per_q = l2 / (facets.u2v2 * z2 + facets.v2 * x2 + facets.u2 * y2);

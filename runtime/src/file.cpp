@@ -1,61 +1,60 @@
 #include "sunbeam/core/file.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
+#include <random>
 #include <sstream>
+#include <system_error>
+#include <utility>
 
+#include "file_sync.h"
 #include "sunbeam/core/error.h"
 
 namespace sunbeam {
 
 AtomicFile::AtomicFile(const std::string& path)
-    : target_(path), path_(path + ".tmp" + std::to_string(::getpid())) {
+    : target_(path), path_(path + ".tmp" + std::to_string(std::random_device()())) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) throw Error(path + ": cannot write: it is a folder");
-  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail();
+  errno = 0;
+  file_.open(path_, std::ios::binary | std::ios::trunc);
+  if (!file_) fail();
 }
 
 AtomicFile::~AtomicFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-  if (!kept_) ::unlink(path_.c_str());
+  file_.close();
+  std::error_code ignored;
+  if (!kept_) std::filesystem::remove(path_, ignored);
 }
 
 void AtomicFile::write(std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail();
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-    position_ += static_cast<std::uint64_t>(written);
-  }
+  errno = 0;
+  if (!file_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()))) fail();
+  position_ += bytes.size();
 }
 
 void AtomicFile::seek(std::uint64_t position) {
-  if (::lseek(descriptor_, static_cast<off_t>(position), SEEK_SET) < 0) fail();
+  errno = 0;
+  if (!file_.seekp(static_cast<std::streamoff>(position))) fail();
   position_ = position;
 }
 
 void AtomicFile::keep() {
-  if (::fsync(descriptor_) != 0 && errno != EINVAL) fail();  // EINVAL: a device that cannot sync
-  const int closed = ::close(descriptor_);
-  descriptor_ = -1;
-  if (closed != 0 || ::rename(path_.c_str(), target_.c_str()) != 0) fail();
+  errno = 0;
+  file_.close();
+  if (!file_ || !sync_to_disk(path_)) fail();
+  std::error_code error;
+  std::filesystem::rename(path_, target_, error);
+  if (error) throw Error(target_ + ": cannot write: " + error.message());
   kept_ = true;
 }
 
+// Standard C++ need not say why.
 void AtomicFile::fail() {
-  const int reason = errno;
-  if (descriptor_ >= 0) ::close(descriptor_);
-  descriptor_ = -1;
-  ::unlink(path_.c_str());
-  throw Error(target_ + ": cannot write: " + std::strerror(reason));
+  const std::string reason = errno != 0 ? std::strerror(errno) : "writing failed";
+  throw Error(target_ + ": cannot write: " + reason);
 }
 
 std::string read_file(const std::string& path) {

@@ -1,6 +1,7 @@
 // The hot part of FilmSpectrum, compiled for each instruction set.
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include "sunbeam/film_spectrum.h"

@@ -60,7 +60,7 @@ class FirstSampler {
     const Ints4 turn = turn_at(along, below_top * (o.r + z) * o.sine2);
     const Color4 level = below_top * (2 * kHeights * o.pdf_per_d);
     const Color4 last = Color4{1, 1, 1, 1} * float{kHeights - 1};
-    return turn * kHeights + __builtin_convertvector(max4(min4(level, last), Color4{}), Ints4);
+    return turn * kHeights + convert<Ints4>(max4(min4(level, last), Color4{}));
   }
 
   // Over the square.

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 
 #include "sunbeam/core/rng.h"
 #include "sunbeam/core/vec.h"

@@ -1,31 +1,20 @@
 // Included by one source file for each instruction set. Everything here is local to that file, and no library
 // function is called: the linker must not take a copy from here for machines that cannot run it.
 //
-// Vectors are GCC's: four doubles hold four cosines, V as many wavelengths as it has floats.
+// Four doubles hold four cosines, V as many wavelengths as it has floats.
 #pragma once
 
+#include <cstring>
+
 #include "film_kernels.h"
+#include "lanes.h"
 
 namespace sunbeam {
 namespace {
 
-using Floats4 = float __attribute__((vector_size(16)));
-using Floats8 = float __attribute__((vector_size(32)));
-using Floats16 = float __attribute__((vector_size(64)));
-
 constexpr int kCosines = 4;
-using Cosines = double __attribute__((vector_size(kCosines * sizeof(double))));
-using CosineBits = long long __attribute__((vector_size(kCosines * sizeof(double))));
-
-// Not returned: without AVX the call would have no settled form.
-inline void square_root(const Cosines& x, Cosines& root) {
-  root = Cosines{__builtin_sqrt(x[0]), __builtin_sqrt(x[1]), __builtin_sqrt(x[2]), __builtin_sqrt(x[3])};
-}
-inline void square_root(const Floats4& x, Floats4& root) {
-  root = Floats4{__builtin_sqrtf(x[0]), __builtin_sqrtf(x[1]), __builtin_sqrtf(x[2]), __builtin_sqrtf(x[3])};
-}
-
-inline Floats4 to_floats(const Cosines& x) { return __builtin_convertvector(x, Floats4); }
+using Cosines = Doubles4;
+using CosineBits = decltype(Cosines{} < Cosines{});
 
 // All that does not depend on the wavelength, for four cosines. Where X < 0 (n1 between n0 and n2), sum + X
 // sin^2 would cancel at grazing. It is then written as (sum + X) - X cos^2, and sum + X as a square: (m_1 +
@@ -52,7 +41,7 @@ inline void prepare_powers(const FilmMedia& media, const Floats4& c0, const Floa
   const auto through = m2 > 0;
   const Floats4 zero = {}, one = zero + 1, per_m1 = 1 / m1;
   Floats4 q2;
-  square_root(through ? m2 : zero, q2);
+  square_root(select(through, m2, zero), q2);
   const Floats4 q0 = n0f * c0, c2 = (1 / n2f) * q2;
   const Floats4 part = 1 - per_n1_squared * m1;  // beta^2 / n1^2
   const Floats4 x_s = (is_between ? -x : x) * per_m1, x_p = x_s * (c0 * c0 - part) * (c2 * c2 - part);
@@ -62,48 +51,45 @@ inline void prepare_powers(const FilmMedia& media, const Floats4& c0, const Floa
     p = n1_squared * c0 * c2 + (n0f * n2f * per_n1_squared) * m1;
     sum_scale = per_m1;
   }
-  angles.sum_s = through ? s * s * sum_scale : one;
-  angles.sum_p = through ? p * p * sum_scale : one;
-  angles.x_s = through ? x_s : zero;
-  angles.x_p = through ? x_p : zero;
+  angles.sum_s = select(through, s * s * sum_scale, one);
+  angles.sum_p = select(through, p * p * sum_scale, one);
+  angles.x_s = select(through, x_s, zero);
+  angles.x_p = select(through, x_p, zero);
   angles.half_t = 2 * q0 * q2;
 }
 
 // Doubles up to the squared cosines and the path, whose digits cancel or turn many times.
 // A call of its own: inlined, its constants would be spread over registers and spilled for lists that are
 // short.
-[[gnu::noinline]] void prepare(const FilmMedia& media, const Cosines& c0, FilmAngles& angles) {
+SUNBEAM_NOINLINE void prepare(const FilmMedia& media, const Cosines& c0, FilmAngles& angles) {
   const double n0 = media.exterior_ior, n1 = media.film_ior, n2 = media.base_ior;
   const Cosines q0 = n0 * c0, m0 = q0 * q0, zero = {};
   const Cosines film_m1 = (n1 - n0) * (n1 + n0) + m0, base_m2 = (n2 - n0) * (n2 + n0) + m0;
-  const Cosines m1 = film_m1 > 1e-20 ? film_m1 : zero + 1e-20;
-  const Cosines m2 = c0 > 1e-9 ? base_m2 : zero;
+  const Cosines m1 = select(film_m1 > 1e-20, film_m1, zero + 1e-20);
+  const Cosines m2 = select(c0 > 1e-9, base_m2, zero);
 
   Cosines q1;
   square_root(m1, q1);
   const Cosines path = media.thickness_nm * q1;
-  const Cosines path_high = (Cosines)((CosineBits)path & ~((1LL << 41) - 1));
-  angles.path = to_floats(path);
-  angles.path_high = to_floats(path_high);
-  angles.path_low = to_floats(path - path_high);
-  prepare_powers(media, to_floats(c0), to_floats(m1), to_floats(m2), angles);
+  const Cosines path_high = bits_as<Cosines>(bits_as<CosineBits>(path) & ~((1LL << 41) - 1));
+  angles.path = convert<Floats4>(path);
+  angles.path_high = convert<Floats4>(path_high);
+  angles.path_low = convert<Floats4>(path - path_high);
+  prepare_powers(media, convert<Floats4>(c0), convert<Floats4>(m1), convert<Floats4>(m2), angles);
 }
 
 // Sums of the lanes that are equal modulo 4.
 inline Floats4 quarters(const Floats4& v) { return v; }
-inline Floats4 quarters(const Floats8& v) {
-  return __builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 4, 5, 6, 7);
-}
+inline Floats4 quarters(const Floats8& v) { return shuffle<0, 1, 2, 3>(v, v) + shuffle<4, 5, 6, 7>(v, v); }
 inline Floats4 quarters(const Floats16& v) {
-  return quarters(__builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7) +
-                  __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15));
+  return quarters(shuffle<0, 1, 2, 3, 4, 5, 6, 7>(v, v) + shuffle<8, 9, 10, 11, 12, 13, 14, 15>(v, v));
 }
 
 // The sums of the lanes of r, g and b; the last lane means nothing.
 inline Floats4 sums(const Floats4& r, const Floats4& g, const Floats4& b) {
-  const Floats4 rg = __builtin_shufflevector(r, g, 0, 4, 1, 5) + __builtin_shufflevector(r, g, 2, 6, 3, 7);
-  const Floats4 bb = b + __builtin_shufflevector(b, b, 2, 3, 2, 3);
-  return __builtin_shufflevector(rg, bb, 0, 1, 4, 4) + __builtin_shufflevector(rg, bb, 2, 3, 5, 5);
+  const Floats4 rg = shuffle<0, 4, 1, 5>(r, g) + shuffle<2, 6, 3, 7>(r, g);
+  const Floats4 bb = b + shuffle<2, 3, 2, 3>(b, b);
+  return shuffle<0, 1, 4, 4>(rg, bb) + shuffle<2, 3, 5, 5>(rg, bb);
 }
 
 // V: as many wavelengths as the instruction set has floats in a vector.
@@ -113,13 +99,13 @@ struct FilmLanes {
 
   static V load(const float* from) {
     V v;
-    __builtin_memcpy(&v, from, sizeof v);
+    std::memcpy(&v, from, sizeof v);
     return v;
   }
 
   static V absolute(const V& v) {
     using Bits = decltype(v < v);
-    return (V)((Bits)v & 0x7fffffff);
+    return bits_as<V>(bits_as<Bits>(v) & 0x7fffffff);
   }
 
   // sin^2 or cos^2(pi u) for the turns u = path per, both in two parts. Only the part of u beyond its nearest
@@ -177,7 +163,7 @@ struct FilmLanes {
     for (std::size_t k = 0; k < wavelengths.padded; k += kWidth) {
       const V t = angles.half_t[0] *
                   passing(angles, 0, load(&wavelengths.per_high[k]), load(&wavelengths.per_low[k]));
-      __builtin_memcpy(transmittance + k, &t, sizeof t);
+      std::memcpy(transmittance + k, &t, sizeof t);
     }
   }
 };

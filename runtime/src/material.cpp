@@ -1,6 +1,7 @@
 #include "sunbeam/material.h"
 
 #include <array>
+#include <cstddef>
 
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/text.h"

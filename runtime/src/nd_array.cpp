@@ -2,6 +2,8 @@
 
 #include <half.h>
 
+#include <utility>
+
 #include "sunbeam/core/error.h"
 
 namespace sunbeam {

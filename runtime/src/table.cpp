@@ -1,5 +1,7 @@
 #include "sunbeam/table.h"
 
+#include <utility>
+
 namespace sunbeam {
 
 Rgb Table::transmittance(const std::array<double, 3>& x) const {

@@ -1,6 +1,7 @@
 #include "table_parts.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/hash.h"

@@ -16,6 +16,7 @@
 #include <istream>
 #include <sstream>
 #include <streambuf>
+#include <utility>
 
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/file.h"

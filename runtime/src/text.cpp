@@ -1,6 +1,7 @@
 #include "sunbeam/core/text.h"
 
 #include <charconv>
+#include <system_error>
 
 namespace sunbeam {
 

@@ -76,15 +76,15 @@ class TexturedRest {
   void prefetch(const TexturedPlace& place, const Direction& w) const {
     const Color4* first = nodes_.data() + place.row + w.path.lower * stride_ + w.cosine.lower;
     for (const int corner : corner_) {
-      __builtin_prefetch(first + corner);
-      __builtin_prefetch(first + corner + stride_);
+      sunbeam::prefetch(first + corner);
+      sunbeam::prefetch(first + corner + stride_);
     }
   }
 
   // The film's transmittance folded, from its reflectance; kept above 0.
   Color4 passing(const FloatRgb& reflectance) const {
     const Color4 all{total_.r - reflectance.r, total_.g - reflectance.g, total_.b - reflectance.b, 0};
-    return all > kLeastPassing ? all : Color4{} + kLeastPassing;
+    return select(all > kLeastPassing, all, Color4{} + kLeastPassing);
   }
 
   const FilmSpectrum& film() const { return film_; }

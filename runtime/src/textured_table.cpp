@@ -69,9 +69,9 @@ struct TexturedData {
   }
 
   // The same for an anisotropic film or path "product", times its bracket.
-  [[gnu::noinline]] Color4 general_factor(const Parameters& parameters, const TexturedPlace& place,
-                                          const TexturedFrame& at, const TexturedEnd& o, const TexturedEnd& i,
-                                          const Vec3& wo, const Vec3& wi) const {
+  SUNBEAM_NOINLINE Color4 general_factor(const Parameters& parameters, const TexturedPlace& place,
+                                         const TexturedFrame& at, const TexturedEnd& o, const TexturedEnd& i,
+                                         const Vec3& wo, const Vec3& wi) const {
     const TexturedRest::PairEnd end_o{std::sqrt(static_cast<float>(wo.z)), quadrant(wo)},
         end_i{std::sqrt(static_cast<float>(wi.z)), quadrant(wi)};
     const float paths = o.per_pigment_cosine + i.per_pigment_cosine;
@@ -192,9 +192,8 @@ double TexturedTable::At::albedo(const Vec3& wo) const {
 }
 
 template <class Viewer>
-[[gnu::always_inline]] inline EvalPdf TexturedTable::At::factored_eval_pdf(const Viewer& viewer,
-                                                                           const Vec3& wo,
-                                                                           const Vec3& wi) const {
+SUNBEAM_INLINE EvalPdf TexturedTable::At::factored_eval_pdf(const Viewer& viewer, const Vec3& wo,
+                                                            const Vec3& wi) const {
   const TexturedData& data = *data_;
   const FacetPair pair(data.facets, viewer.facets, wo, wi);
   const TexturedRest& nodes = *data.rest;
@@ -261,7 +260,7 @@ inline std::optional<BsdfSample> TexturedTable::At::sample_for(const Viewer& vie
 
 // What `call` makes of the viewer, of the kind that the table needs.
 template <class Call>
-[[gnu::always_inline]] inline auto TexturedTable::At::for_viewer(const Vec3& wo, Call call) const {
+SUNBEAM_INLINE auto TexturedTable::At::for_viewer(const Vec3& wo, Call call) const {
   if (data_->kind == Kind::plain) return call(TexturedViewer(*data_, place_, frame_, wo));
   if (data_->kind == Kind::general) return call(TexturedGeneralViewer(*data_, place_, frame_, wo));
   return call(TexturedDenseViewer(*data_, parameters_, wo));

@@ -16,6 +16,7 @@
 // by no more. R may come out as -1e-6 where it is 0. Cosines below 1e-9 count as 0.
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include "sunbeam/wavelengths.h"

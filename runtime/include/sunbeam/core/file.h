@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -26,7 +27,7 @@ class AtomicFile {
   [[noreturn]] void fail();
 
   std::string target_, path_;
-  int descriptor_ = -1;
+  std::ofstream file_;
   std::uint64_t position_ = 0;
   bool kept_ = false;
 };

@@ -1,0 +1,12 @@
+// What standard C++ cannot do to a file.
+#pragma once
+
+#include <string>
+
+namespace sunbeam {
+
+// Returns when the closed file at `path` is on the disk, false with errno if it cannot be. With
+// SUNBEAM_PORTABLE the system writes it when it likes.
+bool sync_to_disk(const std::string& path);
+
+}  // namespace sunbeam

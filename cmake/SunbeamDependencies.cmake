@@ -32,10 +32,12 @@ endif()
 
 if(SUNBEAM_BUILD_BAKE)
   find_package(CLI11 2.1 CONFIG REQUIRED)
+  if(SUNBEAM_BUILD_TESTS)
+    find_package(benchmark 1.7 CONFIG REQUIRED)
+  endif()
 endif()
 
 if(SUNBEAM_BUILD_TESTS)
   find_package(GTest 1.12 CONFIG REQUIRED)
-  find_package(benchmark 1.7 CONFIG REQUIRED)
   find_package(Python3 REQUIRED COMPONENTS Interpreter)
 endif()

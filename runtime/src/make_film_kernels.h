@@ -4,6 +4,10 @@
 // Four doubles hold four cosines, V as many wavelengths as it has floats.
 #pragma once
 
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wpsabi"  // long vectors are returned by functions that are inlined only
+#endif
+
 #include <cstring>
 
 #include "film_kernels.h"
@@ -79,10 +83,14 @@ SUNBEAM_NOINLINE void prepare(const FilmMedia& media, const Cosines& c0, FilmAng
 }
 
 // Sums of the lanes that are equal modulo 4.
-inline Floats4 quarters(const Floats4& v) { return v; }
-inline Floats4 quarters(const Floats8& v) { return shuffle<0, 1, 2, 3>(v, v) + shuffle<4, 5, 6, 7>(v, v); }
-inline Floats4 quarters(const Floats16& v) {
-  return quarters(shuffle<0, 1, 2, 3, 4, 5, 6, 7>(v, v) + shuffle<8, 9, 10, 11, 12, 13, 14, 15>(v, v));
+template <class V>
+Floats4 quarters(const V& v) {
+  if constexpr (sizeof v == sizeof(Floats4))
+    return v;
+  else if constexpr (sizeof v == sizeof(Floats8))
+    return shuffle<0, 1, 2, 3>(v, v) + shuffle<4, 5, 6, 7>(v, v);
+  else
+    return quarters(shuffle<0, 1, 2, 3, 4, 5, 6, 7>(v, v) + shuffle<8, 9, 10, 11, 12, 13, 14, 15>(v, v));
 }
 
 // The sums of the lanes of r, g and b; the last lane means nothing.

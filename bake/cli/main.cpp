@@ -16,6 +16,7 @@
 #include "runtime/config/config.h"
 #include "runtime/tracer/scales.h"
 #include "sunbeam/core/error.h"
+#include "sunbeam/core/processor.h"
 #include "sunbeam/core/text.h"
 
 namespace {
@@ -339,6 +340,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a full quota is an error to report, like a full disk
   try {
+    baseline_is_forced();  // refuses a wrong SUNBEAM_KERNELS before any work
     return run(argc, argv);
   } catch (const Error& error) {
     fmt::print(stderr, "sunbeam: error: {}\n", error.what());

@@ -252,7 +252,7 @@ struct BoundTable::Places {
 
 // What eval_pdf() and sample() know of several lights of one viewer, all above the horizon.
 template <int kLights>
-SUNBEAM_INLINE std::array<BoundTable::Parts, kLights> BoundTable::parts(
+SUNBEAM_ALWAYS_INLINE std::array<BoundTable::Parts, kLights> BoundTable::parts(
     const Viewer& viewer, const Vec3& wo, const std::array<Vec3, kLights>& wi) const {
   constexpr float kPerSolidAngle = static_cast<float>(kInvPi / 4);  // d(root) / d(cosine) / (2 pi)
   const FacetLights<kLights> lights(facets_, viewer.facets, wo, wi.data());
@@ -300,7 +300,7 @@ inline Vec3 BoundTable::draw_rest(int row, Rng& rng) const {
 }
 
 // One number, `lot`, has chosen the technique; what is left of it chooses the row.
-SUNBEAM_INLINE Vec3 BoundTable::draw(const Viewer& viewer, float lot, const Vec3& wo, Rng& rng) const {
+SUNBEAM_ALWAYS_INLINE Vec3 BoundTable::draw(const Viewer& viewer, float lot, const Vec3& wo, Rng& rng) const {
   const float chance = viewer.first_chance(), upper = viewer.rows.upper_weight;
   if (lot < chance) return draw_first(viewer, viewer.rows.lower + (lot < chance * upper), wo, rng);
   return draw_rest(viewer.rows.lower + (lot - chance < (1 - chance) * upper), rng);

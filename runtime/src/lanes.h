@@ -122,25 +122,25 @@ using Ints4 = int __attribute__((vector_size(16)));
 
 // All are inlined: source files for several instruction sets include this (make_film_kernels.h).
 template <class V>
-SUNBEAM_INLINE V select(const decltype(V{} < V{}) & mask, const V& a, const V& b) {
+SUNBEAM_ALWAYS_INLINE V select(const decltype(V{} < V{}) & mask, const V& a, const V& b) {
   return mask ? a : b;
 }
 template <class To, class From>
-SUNBEAM_INLINE To convert(const From& from) {
+SUNBEAM_ALWAYS_INLINE To convert(const From& from) {
   return __builtin_convertvector(from, To);
 }
 template <class To, class From>
-SUNBEAM_INLINE To bits_as(const From& from) {
+SUNBEAM_ALWAYS_INLINE To bits_as(const From& from) {
   return (To)from;
 }
 template <int... kLane, class V>
-SUNBEAM_INLINE auto shuffle(const V& a, const V& b) {
+SUNBEAM_ALWAYS_INLINE auto shuffle(const V& a, const V& b) {
   return __builtin_shufflevector(a, b, kLane...);
 }
-SUNBEAM_INLINE void square_root(const Floats4& x, Floats4& root) {
+SUNBEAM_ALWAYS_INLINE void square_root(const Floats4& x, Floats4& root) {
   root = Floats4{__builtin_sqrtf(x[0]), __builtin_sqrtf(x[1]), __builtin_sqrtf(x[2]), __builtin_sqrtf(x[3])};
 }
-SUNBEAM_INLINE void square_root(const Doubles4& x, Doubles4& root) {
+SUNBEAM_ALWAYS_INLINE void square_root(const Doubles4& x, Doubles4& root) {
   root = Doubles4{__builtin_sqrt(x[0]), __builtin_sqrt(x[1]), __builtin_sqrt(x[2]), __builtin_sqrt(x[3])};
 }
 

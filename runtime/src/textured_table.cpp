@@ -192,8 +192,8 @@ double TexturedTable::At::albedo(const Vec3& wo) const {
 }
 
 template <class Viewer>
-SUNBEAM_INLINE EvalPdf TexturedTable::At::factored_eval_pdf(const Viewer& viewer, const Vec3& wo,
-                                                            const Vec3& wi) const {
+SUNBEAM_ALWAYS_INLINE EvalPdf TexturedTable::At::factored_eval_pdf(const Viewer& viewer, const Vec3& wo,
+                                                                   const Vec3& wi) const {
   const TexturedData& data = *data_;
   const FacetPair pair(data.facets, viewer.facets, wo, wi);
   const TexturedRest& nodes = *data.rest;
@@ -260,7 +260,7 @@ inline std::optional<BsdfSample> TexturedTable::At::sample_for(const Viewer& vie
 
 // What `call` makes of the viewer, of the kind that the table needs.
 template <class Call>
-SUNBEAM_INLINE auto TexturedTable::At::for_viewer(const Vec3& wo, Call call) const {
+SUNBEAM_ALWAYS_INLINE auto TexturedTable::At::for_viewer(const Vec3& wo, Call call) const {
   if (data_->kind == Kind::plain) return call(TexturedViewer(*data_, place_, frame_, wo));
   if (data_->kind == Kind::general) return call(TexturedGeneralViewer(*data_, place_, frame_, wo));
   return call(TexturedDenseViewer(*data_, parameters_, wo));

@@ -105,8 +105,6 @@ class FactoredEnergy : public ::testing::TestWithParam<test::FilmRow> {
   static const Table& table() { return test::factored(GetParam(), "full", kBright); }
 };
 
-std::string name_of(const ::testing::TestParamInfo<test::FilmRow>& info) { return info.param.name(); }
-
 // 20000 materials, each in a direction. Deterministic: no false alarm.
 TEST_P(FactoredEnergy, OfEachWavelength) {
   constexpr int kTasks = 100, kMaterials = 200;
@@ -148,7 +146,7 @@ TEST_P(FactoredEnergy, OfBoundTables) {
   EXPECT_LE(largest_of_bound(table(), [](const Rgb& albedo) { return mean(albedo); }), kMostAlbedo);
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, FactoredEnergy, ::testing::ValuesIn(bright_rows()), name_of);
+INSTANTIATE_TEST_SUITE_P(Each, FactoredEnergy, ::testing::ValuesIn(bright_rows()), test::name_of_row);
 
 class FactoredEnergyOfChannels : public ::testing::TestWithParam<test::FilmRow> {};
 
@@ -159,7 +157,8 @@ TEST_P(FactoredEnergyOfChannels, OfBoundTables) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, FactoredEnergyOfChannels,
-                         ::testing::Values(bright_rows()[0], bright_rows()[1], bright_rows()[3]), name_of);
+                         ::testing::Values(bright_rows()[0], bright_rows()[1], bright_rows()[3]),
+                         test::name_of_row);
 
 }  // namespace
 }  // namespace sunbeam

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# From a bare Debian 12 to a baked, verified table and a rendered preview: bash cmake/demo.sh
+# From a bare Debian 12 or 13 to a baked, verified table and a rendered preview: bash cmake/demo.sh
 # Options by environment: OUT=folder for the results (default out/).
 source "$(dirname "$0")/setup.sh"
 
+say "Building the tool, baking and rendering: about 5 minutes from bare on two idle cores, most of it the build"
 install_packages "${packages[@]}"
 build release -DSUNBEAM_BUILD_TESTS=OFF
 

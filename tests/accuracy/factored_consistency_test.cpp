@@ -5,23 +5,20 @@
 namespace sunbeam {
 namespace {
 
-class FactoredConsistency : public ::testing::TestWithParam<test::FilmRow> {
- protected:
-  // Between all nodes.
-  TableBsdf bsdf() const {
-    return TableBsdf(test::lower_half(GetParam(), "full"), {433, 1.15, 0.21}, OutsideGrid::refuse);
-  }
-};
+using test::FactoredTable;
 
-std::string name_of(const ::testing::TestParamInfo<test::FilmRow>& info) { return info.param.name(); }
+// Between all nodes.
+TableBsdf between_nodes(const Table& table) {
+  return TableBsdf(table, {433, 1.15, 0.21}, OutsideGrid::refuse);
+}
 
 const Vec3 kOblique = spherical_direction(0.9, 0.4);
 const Vec3 kSteep = spherical_direction(0.3, 2.5);
 const Vec3 kGrazing = spherical_direction(1.4, 5);
 
 // 14 rows x 3 directions, false alarm 1e-3 in all.
-TEST_P(FactoredConsistency, SamplesFollowThePdf) {
-  const TableBsdf table = bsdf();
+TEST_P(FactoredTable, SamplesFollowThePdf) {
+  const TableBsdf table = between_nodes(this->table());
   for (const Vec3& wo : {kOblique, kSteep, kGrazing}) {
     const auto result = test::chi_square_of_sampling(table, wo, {.samples = 100000, .pdf_samples = 16}, 1);
     EXPECT_GT(result.p_value, test::sidak(1e-3, 42)) << wo.z;
@@ -31,8 +28,8 @@ TEST_P(FactoredConsistency, SamplesFollowThePdf) {
 
 // Sampled against integrated albedo, the Dirac included: 14 rows x 2 directions at 4.5 standard errors, 2e-4
 // in all. Quadrature is good to 1e-4.
-TEST_P(FactoredConsistency, SampledAlbedoIsTheAlbedo) {
-  const TableBsdf table = bsdf();
+TEST_P(FactoredTable, SampledAlbedoIsTheAlbedo) {
+  const TableBsdf table = between_nodes(this->table());
   for (const Vec3& wo : {kOblique, kSteep}) {
     const auto sampled = test::sample_totals(table, wo, 100000, 2).albedo.grey;
     const double albedo = mean(table.albedo(wo));
@@ -42,8 +39,8 @@ TEST_P(FactoredConsistency, SampledAlbedoIsTheAlbedo) {
 }
 
 // Lists of every length modulo four, lights at and below the horizon among them, and nothing written beyond.
-TEST_P(FactoredConsistency, ListsOfLightsAreEvaluatedAsSingleOnes) {
-  const TableBsdf table = bsdf();
+TEST_P(FactoredTable, ListsOfLightsAreEvaluatedAsSingleOnes) {
+  const TableBsdf table = between_nodes(this->table());
   Rng rng(4, 0);
   for (std::size_t count = 0; count < 40; ++count) {
     const Vec3 wo = test::uniform_hemisphere({rng.uniform(), rng.uniform()});
@@ -65,8 +62,8 @@ TEST_P(FactoredConsistency, ListsOfLightsAreEvaluatedAsSingleOnes) {
 }
 
 // Throughput is f cos / pdf of the whole; a Dirac's its weight over what the rest of the density leaves.
-TEST_P(FactoredConsistency, ThroughputIsEvalOverPdf) {
-  const TableBsdf table = bsdf();
+TEST_P(FactoredTable, ThroughputIsEvalOverPdf) {
+  const TableBsdf table = between_nodes(this->table());
   Rng rng(3, 0);
   int seen = 0;
   for (int k = 0; k < 20000; ++k) {
@@ -82,8 +79,8 @@ TEST_P(FactoredConsistency, ThroughputIsEvalOverPdf) {
 }
 
 // Two floats are multiplied in another order: 1e-5 is a hundred roundings.
-TEST_P(FactoredConsistency, IsReciprocal) {
-  const TableBsdf table = bsdf();
+TEST_P(FactoredTable, IsReciprocal) {
+  const TableBsdf table = between_nodes(this->table());
   Rng rng(4, 0);
   for (int k = 0; k < 20000; ++k) {
     const Vec3 a = test::uniform_hemisphere({rng.uniform(), rng.uniform()});
@@ -94,26 +91,27 @@ TEST_P(FactoredConsistency, IsReciprocal) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, FactoredConsistency, ::testing::ValuesIn(test::all_rows()), name_of);
+INSTANTIATE_TEST_SUITE_P(Each, FactoredTable, ::testing::ValuesIn(test::all_rows()), test::name_of_row);
 
 // A clear pigment over a white base under a film that absorbs nothing returns all light: albedo 1 in every
 // direction, for a smooth film, which loses nothing between its facets. 1e-3 is interpolation; 3e-3 with path
 // "product", whose exchange has few nodes a fringe (2e-3 where resonances at grazing make it kink).
 TEST(FactoredFurnace, SmoothClearWhite) {
-  for (const auto& [row, spectrum] : test::in_both_spectra(test::plain_rows())) {
-    if (!row.is_smooth()) continue;
-    const Table& table = test::factored(row, spectrum, {"material.albedo=1", "grid.absorption_per_nm=[0]"});
-    for (const double thickness : {0.0, 123.0, 500.0, 1499.0})
-      for (const double ior : {1.0, 1.03, 1.37, 1.99}) {
-        const TableBsdf bsdf(table, {thickness, ior, 0}, OutsideGrid::refuse);
-        for (const double cosine : {1.0, 0.7, 0.3, 0.1}) {
-          const Rgb albedo = bsdf.albedo(direction_from_cosine(cosine, 0));
-          for (int c = 0; c < 3; ++c)
-            EXPECT_NEAR(albedo[c], 1, row.path == "sum" ? 1e-3 : 3e-3)
-                << row.name() << ' ' << spectrum << ' ' << thickness << ' ' << ior << ' ' << cosine;
+  for (const test::FilmRow& row : test::plain_rows())
+    for (const char* spectrum : {"rgb3", "full"}) {
+      if (!row.is_smooth()) continue;
+      const Table& table = test::factored(row, spectrum, {"material.albedo=1", "grid.absorption_per_nm=[0]"});
+      for (const double thickness : {0.0, 123.0, 500.0, 1499.0})
+        for (const double ior : {1.0, 1.03, 1.37, 1.99}) {
+          const TableBsdf bsdf(table, {thickness, ior, 0}, OutsideGrid::refuse);
+          for (const double cosine : {1.0, 0.7, 0.3, 0.1}) {
+            const Rgb albedo = bsdf.albedo(direction_from_cosine(cosine, 0));
+            for (int c = 0; c < 3; ++c)
+              EXPECT_NEAR(albedo[c], 1, row.path == "sum" ? 1e-3 : 3e-3)
+                  << row.name() << ' ' << spectrum << ' ' << thickness << ' ' << ior << ' ' << cosine;
+          }
         }
-      }
-  }
+    }
 }
 
 }  // namespace

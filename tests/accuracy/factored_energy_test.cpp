@@ -99,62 +99,66 @@ double largest(std::size_t tasks, Measure measure) {
   return *std::max_element(found.begin(), found.end());
 }
 
-// 5 x 20000 materials, each in a direction. Deterministic: no false alarm.
-TEST(FactoredEnergy, OfEachWavelength) {
+// Rows whose tables are bright, one a test.
+class FactoredEnergy : public ::testing::TestWithParam<test::FilmRow> {
+ protected:
+  static const Table& table() { return test::factored(GetParam(), "full", kBright); }
+};
+
+// 20000 materials, each in a direction. Deterministic: no false alarm.
+TEST_P(FactoredEnergy, OfEachWavelength) {
   constexpr int kTasks = 100, kMaterials = 200;
-  for (const test::FilmRow& row : bright_rows()) {
-    const Table& table = test::factored(row, "full", kBright);
-    const double found = largest(kTasks, [&](Rng& rng) {
-      Monochromatic material(table);
-      double most = 0;
-      for (int k = 0; k < kMaterials; ++k) most = std::max(most, material.albedo(rng));
-      return most;
-    });
-    EXPECT_LE(found, kMostAlbedo) << row.name();
-    EXPECT_GT(found, 0.9) << row.name();  // it is bright
-  }
+  const Table& table = this->table();
+  const double found = largest(kTasks, [&](Rng& rng) {
+    Monochromatic material(table);
+    double most = 0;
+    for (int k = 0; k < kMaterials; ++k) most = std::max(most, material.albedo(rng));
+    return most;
+  });
+  EXPECT_LE(found, kMostAlbedo);
+  EXPECT_GT(found, 0.9);  // it is bright
 }
 
-TEST(FactoredEnergy, MeansOverChannelsAreMeansOverWavelengths) {
+TEST_P(FactoredEnergy, MeansOverChannelsAreMeansOverWavelengths) {
   double sum = 0;
-  for (const Rgb& weight : test::factored(bright_rows()[0], "full", kBright).factors.wavelengths.weight) {
+  for (const Rgb& weight : table().factors.wavelengths.weight) {
     EXPECT_GE(mean(weight), 0);
     sum += mean(weight);
   }
   EXPECT_NEAR(sum, 1, 1e-6);
 }
 
-// 5 x 120 tables bound whole, in 3 directions each: the mean of ACEScg's channels.
-TEST(FactoredEnergy, OfBoundTables) {
-  for (const test::FilmRow& row : bright_rows()) {
-    const Table& table = test::factored(row, "full", kBright);
-    const double found = largest(120, [&](Rng& rng) {
-      const TableBsdf bsdf(table, draw(table, rng), OutsideGrid::refuse);
-      double most = 0;
-      for (int k = 0; k < 3; ++k)
-        most =
-            std::max(most, mean(bsdf.albedo(direction_from_cosine(lerp(rng.uniform(), kLeastCosine, 1), 0))));
-      return most;
-    });
-    EXPECT_LE(found, kMostAlbedo) << row.name();
-  }
+// Largest albedo, as `measure` takes it, of 120 tables bound whole, in 3 directions each.
+template <class Measure>
+double largest_of_bound(const Table& table, Measure measure) {
+  return largest(120, [&](Rng& rng) {
+    const TableBsdf bsdf(table, draw(table, rng), OutsideGrid::refuse);
+    double most = 0;
+    for (int k = 0; k < 3; ++k)
+      most = std::max(most,
+                      measure(bsdf.albedo(direction_from_cosine(lerp(rng.uniform(), kLeastCosine, 1), 0))));
+    return most;
+  });
 }
 
-// Each channel of rgb3 is a wavelength.
-TEST(FactoredEnergy, OfTheChannelsOfBoundTables) {
-  for (const test::FilmRow& row : {bright_rows()[0], bright_rows()[1], bright_rows()[3]}) {
-    const Table& table = test::factored(row, "rgb3", kBright);
-    const double found = largest(120, [&](Rng& rng) {
-      const TableBsdf bsdf(table, draw(table, rng), OutsideGrid::refuse);
-      double most = 0;
-      for (int k = 0; k < 3; ++k)
-        most = std::max(
-            most, max_component(bsdf.albedo(direction_from_cosine(lerp(rng.uniform(), kLeastCosine, 1), 0))));
-      return most;
-    });
-    EXPECT_LE(found, kMostAlbedo) << row.name();
-  }
+// The mean of ACEScg's channels.
+TEST_P(FactoredEnergy, OfBoundTables) {
+  EXPECT_LE(largest_of_bound(table(), [](const Rgb& albedo) { return mean(albedo); }), kMostAlbedo);
 }
+
+INSTANTIATE_TEST_SUITE_P(Each, FactoredEnergy, ::testing::ValuesIn(bright_rows()), test::name_of_row);
+
+class FactoredEnergyOfChannels : public ::testing::TestWithParam<test::FilmRow> {};
+
+// Each channel of rgb3 is a wavelength.
+TEST_P(FactoredEnergyOfChannels, OfBoundTables) {
+  const Table& table = test::factored(GetParam(), "rgb3", kBright);
+  EXPECT_LE(largest_of_bound(table, [](const Rgb& albedo) { return max_component(albedo); }), kMostAlbedo);
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, FactoredEnergyOfChannels,
+                         ::testing::Values(bright_rows()[0], bright_rows()[1], bright_rows()[3]),
+                         test::name_of_row);
 
 }  // namespace
 }  // namespace sunbeam

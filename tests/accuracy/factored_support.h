@@ -66,21 +66,12 @@ inline const Table& lower_half(const FilmRow& row, const std::string& spectrum) 
   return factored(row, spectrum, {"grid.base_ior={from=1.0, to=1.1975308641975309, count=5}"});
 }
 
-struct SpectralRow {
-  FilmRow row;
-  std::string spectrum;
-  friend void PrintTo(const SpectralRow& r, std::ostream* out) { *out << r.row.name() << "_" << r.spectrum; }
+// What is asked of the lower half of a row's table at all wavelengths, in several files.
+class FactoredTable : public ::testing::TestWithParam<FilmRow> {
+ protected:
+  static const Table& table() { return lower_half(GetParam(), "full"); }
 };
 
-inline std::vector<SpectralRow> in_both_spectra(const std::vector<FilmRow>& rows) {
-  std::vector<SpectralRow> result;
-  for (const FilmRow& row : rows)
-    for (const char* spectrum : {"rgb3", "full"}) result.push_back({row, spectrum});
-  return result;
-}
-
-inline std::string name_of_row(const ::testing::TestParamInfo<SpectralRow>& info) {
-  return info.param.row.name() + "_" + info.param.spectrum;
-}
+inline std::string name_of_row(const ::testing::TestParamInfo<FilmRow>& info) { return info.param.name(); }
 
 }  // namespace sunbeam::test

@@ -6,9 +6,7 @@
 namespace sunbeam {
 namespace {
 
-class FactoredValues : public ::testing::TestWithParam<test::FilmRow> {};
-
-std::string name_of(const ::testing::TestParamInfo<test::FilmRow>& info) { return info.param.name(); }
+using test::FactoredTable;
 
 // Parameters between the nodes, and directions in and out of the grooves' planes.
 const Parameters kParameters[] = {{433, 1.15, 0.21}, {1111, 1.02, 0.03}};
@@ -17,12 +15,11 @@ const Vec3 kDirections[] = {spherical_direction(0.2, 0.3), spherical_direction(0
 
 // 14 rows x 2 parameters x 3 wi x 3 wo x 3 channels: |z| < 5.5 by Bonferroni (4e-8 each) is a false alarm of
 // 3e-5 in all if means were normal. Half a percent, the p99 of the tables themselves, is forgiven.
-TEST_P(FactoredValues, AgreeWithWalks) {
+TEST_P(FactoredTable, AgreesWithWalks) {
   constexpr int kBatches = 32, kEstimates = 128;
-  const Table& table = test::lower_half(GetParam(), "full");
   const Recipe recipe = test::recipe_of(GetParam(), "full");
   for (const Parameters& parameters : kParameters) {
-    const TableBsdf bsdf(table, parameters, OutsideGrid::refuse);
+    const TableBsdf bsdf(table(), parameters, OutsideGrid::refuse);
     const Pfmc model(bsdf.material(), recipe.spectrum.wavelengths(bsdf.material()));
     for (const Vec3& wi : kDirections) {
       test::RgbMean live[3];
@@ -45,8 +42,6 @@ TEST_P(FactoredValues, AgreeWithWalks) {
     }
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Each, FactoredValues, ::testing::ValuesIn(test::all_rows()), name_of);
 
 }  // namespace
 }  // namespace sunbeam

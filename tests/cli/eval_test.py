@@ -210,7 +210,7 @@ class Live(EvalTest):
         self.write("points.csv", f"{ANGLES}\n30,40,180\n")
         with open("/dev/full", "wb") as full:
             process = subprocess.run([support.BINARY, "eval", "tiny.toml", "--points", "points.csv", *SAMPLES],
-                                     cwd=self.folder, stdout=full, stderr=subprocess.PIPE, timeout=60)
+                                     cwd=self.folder, stdout=full, stderr=subprocess.PIPE, timeout=support.TIME_LIMIT_S)
         self.assertEqual(process.returncode, 2)
         self.assertEqual(process.stderr, b"sunbeam: error: standard output: cannot write\n")
 

@@ -169,7 +169,7 @@ class RecipeErrors(support.CliTest):
                          for key in ("film_thickness_nm", "base_ior", "absorption_per_nm"))
         name = self.write("bad.toml", recipe_with("grid", huge))
         self.refuse("bake", name, "-o", "out.exr", "--set", "table.angles=512", "--set", "table.azimuths=512",
-                    naming=["bad.toml"], timeout=20)
+                    naming=["bad.toml"], preexec_fn=support.limit_cpu_seconds(20))
 
     def test_unknown_keys_name_the_nearest(self):
         self.check("material", "film_thicknes_nm", "300.0", "not known", "'film_thickness_nm'")

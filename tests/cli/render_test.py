@@ -185,7 +185,7 @@ class Pictures(RenderTest):
         self.assertIn("100 %", result.err)
         stats = json.loads(self.read("time.json"))
         self.assertGreater(stats["samples"], 24 * 16 * 100)
-        self.assertLess(stats["seconds"], 10)
+        self.assertLess(stats["cpu_seconds"], 10)  # whatever else runs
 
     def test_a_limit_of_noise(self):
         for noise in ("0.1", "0.02"):
@@ -218,12 +218,10 @@ class Pictures(RenderTest):
         process = subprocess.Popen(
             [support.BINARY, "render", "scenes/scene.toml", "-o", "stopped.exr", "--spp", "16777216", "--watch"],
             cwd=self.folder, stderr=subprocess.PIPE)
-        for _ in range(600):
-            if (self.folder / "stopped.png").exists():  # of --watch
-                break
+        while process.poll() is None and not (self.folder / "stopped.png").exists():  # of --watch
             time.sleep(0.1)
         process.send_signal(signal.SIGINT)
-        _, err = process.communicate(timeout=60)
+        _, err = process.communicate(timeout=support.TIME_LIMIT_S)
         self.assertEqual(process.returncode, 130, err)
         self.assertIn(b"--resume stopped.exr", err)
         self.assertEqual(exr_size(self.read("stopped.exr")), (24, 16))

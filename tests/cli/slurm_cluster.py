@@ -13,7 +13,7 @@ import subprocess
 import time
 
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "scontrol", "squeue", "unshare")
-START_LIMIT_S = 60
+START_LIMIT_S = 200
 PR_SET_PDEATHSIG = 1
 
 # Requeued jobs wait for cred_expire seconds.
@@ -40,6 +40,8 @@ SchedulerParameters=sched_interval=1,batch_sched_delay=0,sched_min_interval=1000
 AccountingStorageType=accounting_storage/none
 JobCompType=jobcomp/none
 ReturnToService=2
+MessageTimeout=100
+SlurmdTimeout=0
 SlurmdParameters=config_overrides
 NodeName=node NodeHostname={host} NodeAddr=127.0.0.1 Port={ports[1]} CPUs=2 State=UNKNOWN
 PartitionName=all Nodes=node Default=YES MaxTime=INFINITE State=UP

@@ -12,7 +12,7 @@ import support
 # Its blocks take seconds, and their error is soon measured.
 RECIPE = ("tiny.toml", *support.BAKE_JOBS["dense"], "--set", "table.angles=10", "--set", "accuracy.noise=0.0002")
 PARTS = 4
-TIME_LIMIT_S = 150
+TIME_LIMIT_S = 500
 
 # Stands for sunbeam: kills the first run of part 3 once it has some blocks.
 FAILS_ONCE = """\

@@ -49,7 +49,7 @@ target_link_libraries(example PRIVATE sunbeam::table_vdb)
 
 
 def run(*command, check=True, cwd=None):
-    result = subprocess.run([str(part) for part in command], capture_output=True, text=True, timeout=400, cwd=cwd)
+    result = subprocess.run([str(part) for part in command], capture_output=True, text=True, timeout=500, cwd=cwd)
     if check and result.returncode != 0:
         raise AssertionError(f"$ {' '.join(map(str, command))}\n{result.stdout}\n{result.stderr}")
     return result

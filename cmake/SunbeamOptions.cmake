@@ -15,12 +15,15 @@ if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
 endif()
 
-# -Wrestrict has false alarms on std::string in GCC 12 (bug 105651).
+# GCC 12 has false alarms of -Wrestrict on std::string (bug 105651), GCC 13 and 14 of -Wdangling-reference on functions
+# that take a temporary and return a reference to something else.
 # errno and floating-point traps are never read; without them sqrt and friends inline.
 # On Arm compilers would fuse multiplications with additions, and numbers would not be those of x86-64.
 if(NOT MSVC)
   add_compile_options(-Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> -fno-math-errno -fno-trapping-math -ffp-contract=off)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,13>>:-Wno-dangling-reference>
+    -fno-math-errno -fno-trapping-math -ffp-contract=off)
 endif()
 option(SUNBEAM_WERROR "Treat warnings as errors" OFF)
 if(SUNBEAM_WERROR)

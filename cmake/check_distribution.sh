@@ -30,7 +30,7 @@ mkdir -p "$roots"
 root=$(realpath "$roots")/$suite
 checkout=/sunbeam-$compiler
 settings=(HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive
-  CXXFLAGS=-Werror)
+  CXXFLAGS=-Werror SUNBEAM_NEEDS_SLURM=1)
 
 in_root() { chroot "$root" env -i "${settings[@]}" "$@"; }
 
@@ -44,8 +44,8 @@ timed() {
 
 unmount() {
   local place
-  for place in dev proc; do
-    if mountpoint -q "$root/$place"; then umount -l "$root/$place"; fi
+  for place in "$root/dev" "$root/proc" "$root"; do
+    if mountpoint -q "$place"; then umount -l "$place"; fi
   done
 }
 
@@ -55,6 +55,7 @@ make_root() {
   cp /etc/apt/apt.conf.d/*proxy* /etc/apt/apt.conf.d/99* "$root/etc/apt/apt.conf.d/" 2>/dev/null || true
   cp /etc/resolv.conf "$root/etc/resolv.conf"
   trap unmount EXIT
+  mount --bind "$root" "$root"  # Slurm's test makes namespaces, which want a root that is mounted
   mount --bind /dev "$root/dev"
   mount -t proc proc "$root/proc"
   in_root apt-get update -q

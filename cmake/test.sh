@@ -2,7 +2,7 @@
 # From a bare Debian 12 or 13 to a passed test suite; tests/README.md says what there is.
 source "$(dirname "$0")/setup.sh"
 
-labels="unit statistical accuracy render cli bench long"
+labels="unit portable statistical accuracy render cli bench long"
 usage="usage: bash cmake/test.sh [--all | --label NAME] [-DNAME=VALUE...]
   (nothing)     every test but those labelled long: about 15 minutes from bare on two idle cores
   --all         every test: a minute or two more

@@ -44,8 +44,8 @@ timed() {
 
 unmount() {
   local place
-  for place in "$root/dev" "$root/proc" "$root"; do
-    if mountpoint -q "$place"; then umount -l "$place"; fi
+  for place in "$root/dev" "$root/proc" "$root/sys" "$root"; do
+    if mountpoint -q "$place"; then umount -R -l "$place"; fi
   done
 }
 
@@ -55,7 +55,9 @@ make_root() {
   cp /etc/apt/apt.conf.d/*proxy* /etc/apt/apt.conf.d/99* "$root/etc/apt/apt.conf.d/" 2>/dev/null || true
   cp /etc/resolv.conf "$root/etc/resolv.conf"
   trap unmount EXIT
-  mount --bind "$root" "$root"  # Slurm's test makes namespaces, which want a root that is mounted
+  # Slurm's test makes namespaces, which want a root that is mounted, and looks for control groups.
+  mount --bind "$root" "$root"
+  mount --rbind --make-rslave /sys "$root/sys"
   mount --bind /dev "$root/dev"
   mount -t proc proc "$root/proc"
   in_root apt-get update -q

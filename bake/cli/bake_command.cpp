@@ -3,15 +3,15 @@
 #include <filesystem>
 #include <optional>
 
+#include "bake/base/version.h"
 #include "bake/cli/commands.h"
-#include "bake/cli/finish_bake.h"
 #include "bake/cli/interrupt.h"
-#include "bake/solved_job.h"
-#include "bake/sweep.h"
-#include "bake/version.h"
-#include "bake/work_folder.h"
+#include "bake/dense/solved_job.h"
+#include "bake/jobs/bake.h"
+#include "bake/jobs/finish_bake.h"
+#include "bake/jobs/work_folder.h"
 #include "sunbeam/core/error.h"
-#include "sunbeam/core/file.h"
+#include "sunbeam/detail/file.h"
 #include "sunbeam/table_vdb.h"
 
 namespace sunbeam {

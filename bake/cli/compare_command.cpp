@@ -8,7 +8,7 @@
 #include "bake/compare/false_color.h"
 #include "bake/compare/flip.h"
 #include "sunbeam/core/error.h"
-#include "sunbeam/core/file.h"
+#include "sunbeam/detail/file.h"
 
 namespace sunbeam {
 namespace {

@@ -4,11 +4,11 @@
 #include <iostream>
 #include <sstream>
 
+#include "bake/check/eval_csv.h"
 #include "bake/cli/commands.h"
-#include "bake/points.h"
-#include "bake/recipe.h"
+#include "bake/recipe/recipe.h"
 #include "sunbeam/core/error.h"
-#include "sunbeam/core/file.h"
+#include "sunbeam/detail/file.h"
 #include "sunbeam/table_vdb.h"
 
 namespace sunbeam {

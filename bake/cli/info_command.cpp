@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/cli/commands.h"
-#include "bake/estimator.h"
-#include "bake/recipe.h"
-#include "sunbeam/core/file.h"
-#include "sunbeam/core/text.h"
+#include "bake/live/estimator.h"
+#include "bake/recipe/recipe.h"
+#include "sunbeam/detail/file.h"
+#include "sunbeam/detail/text.h"
 #include "sunbeam/table_vdb.h"
 
 namespace sunbeam {

@@ -11,13 +11,13 @@
 #include <new>
 #include <tuple>
 
+#include "bake/base/version.h"
 #include "bake/cli/commands.h"
-#include "bake/version.h"
 #include "runtime/config/config.h"
 #include "runtime/tracer/scales.h"
 #include "sunbeam/core/error.h"
-#include "sunbeam/core/processor.h"
-#include "sunbeam/core/text.h"
+#include "sunbeam/detail/processor.h"
+#include "sunbeam/detail/text.h"
 
 namespace {
 

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
+#include "bake/blocks/parts.h"
 #include "bake/cli/commands.h"
-#include "bake/cli/finish_bake.h"
-#include "bake/parts.h"
-#include "bake/sweep.h"
+#include "bake/jobs/bake.h"
+#include "bake/jobs/finish_bake.h"
 #include "sunbeam/core/error.h"
-#include "sunbeam/core/file.h"
+#include "sunbeam/detail/file.h"
 #include "sunbeam/table_vdb.h"
 
 namespace sunbeam {

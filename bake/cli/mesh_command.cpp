@@ -4,7 +4,7 @@
 #include "runtime/tracer/mesh_file.h"
 #include "runtime/tracer/snake.h"
 #include "sunbeam/core/error.h"
-#include "sunbeam/core/file.h"
+#include "sunbeam/detail/file.h"
 
 namespace sunbeam {
 namespace {

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <map>
 
-#include "bake/version.h"
+#include "bake/base/version.h"
 #include "runtime/tracer/image_io.h"
 #include "sunbeam/core/error.h"
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "bake/cli/commands.h"
-#include "bake/recipe.h"
+#include "bake/recipe/recipe.h"
 #include "bake/report/chart.h"
 #include "bake/report/polar_chart.h"
 #include "bake/report/reflectance_chart.h"
@@ -11,7 +11,7 @@
 #include "bake/report/sphere.h"
 #include "runtime/tracer/image_io.h"
 #include "sunbeam/core/error.h"
-#include "sunbeam/core/file.h"
+#include "sunbeam/detail/file.h"
 #include "sunbeam/table_vdb.h"
 
 namespace sunbeam {

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <string>
 
-#include "bake/run_tasks.h"
+#include "bake/blocks/run.h"
 
 namespace sunbeam {
 

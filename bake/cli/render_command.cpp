@@ -9,13 +9,13 @@
 #include "bake/cli/interrupt.h"
 #include "bake/cli/picture.h"
 #include "bake/cli/progress.h"
-#include "bake/cli/scene_materials.h"
+#include "bake/scene/materials.h"
 #include "runtime/config/config.h"
 #include "runtime/tracer/render.h"
 #include "runtime/tracer/scene.h"
 #include "sunbeam/core/error.h"
-#include "sunbeam/core/file.h"
-#include "sunbeam/core/hash.h"
+#include "sunbeam/detail/file.h"
+#include "sunbeam/detail/hash.h"
 
 namespace sunbeam {
 namespace {

@@ -5,7 +5,7 @@
 #include "runtime/tracer/scales.h"
 #include "runtime/tracer/snake_scales.h"
 #include "sunbeam/core/error.h"
-#include "sunbeam/core/file.h"
+#include "sunbeam/detail/file.h"
 
 namespace sunbeam {
 namespace {

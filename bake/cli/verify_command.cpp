@@ -6,13 +6,13 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "bake/check/verify.h"
 #include "bake/cli/commands.h"
 #include "bake/cli/progress.h"
-#include "bake/recipe.h"
+#include "bake/recipe/recipe.h"
 #include "bake/report/html_report.h"
-#include "bake/verify.h"
 #include "sunbeam/core/error.h"
-#include "sunbeam/core/file.h"
+#include "sunbeam/detail/file.h"
 #include "sunbeam/table_vdb.h"
 
 namespace sunbeam {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sunbeam/core/bracket.h"
+#include "sunbeam/detail/bracket.h"
 
 namespace sunbeam {
 

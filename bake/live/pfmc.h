@@ -4,7 +4,7 @@
 // and leave along wo; here split into
 //   first = the reflection off the film's upper surface (closed form; a Dirac weight if the film is smooth),
 //   rest  = everything that has been below the film, estimated by walks.
-// Unidirectional: walks from wi connect to wo through the film at every visit of the base (walk.h).
+// Unidirectional: walks from wi connect to wo through the film at every visit of the base (unidirectional.h).
 // Bidirectional: walks from both sides, every connection, weighted by the balance heuristic
 // (bidirectional.h). Both are unbiased and exact in expectation for every film, smooth or rough, straight or
 // refracting. Reciprocity of the passage turns leaving into entering, which leaves one factor (n0/n2)^2 on
@@ -22,12 +22,12 @@
 #include <optional>
 #include <span>
 
-#include "bake/live/events.h"
-#include "bake/live/kernels.h"
-#include "bake/live/stack.h"
+#include "bake/live/general/stack.h"
+#include "bake/live/walks/film_events.h"
+#include "bake/live/walks/kernels.h"
 #include "sunbeam/bsdf.h"
-#include "sunbeam/ggx.h"
-#include "sunbeam/wavelengths.h"
+#include "sunbeam/detail/ggx.h"
+#include "sunbeam/detail/wavelengths.h"
 
 namespace sunbeam {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "bake/estimator.h"
-#include "bake/live/exact_bsdf.h"
-#include "bake/live/spectrum.h"
+#include "bake/live/estimator.h"
+#include "bake/live/exact/exact_bsdf.h"
+#include "bake/optics/spectrum.h"
 #include "sunbeam/core/color_space.h"
 #include "sunbeam/table_bsdf.h"
 

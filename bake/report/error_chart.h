@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/verify.h"
+#include "bake/check/verify.h"
 
 namespace sunbeam {
 

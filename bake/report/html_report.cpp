@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "bake/base/version.h"
 #include "bake/report/appearance.h"
 #include "bake/report/chart.h"
 #include "bake/report/error_chart.h"
@@ -10,8 +11,7 @@
 #include "bake/report/polar_chart.h"
 #include "bake/report/slice.h"
 #include "bake/report/sphere.h"
-#include "bake/version.h"
-#include "sunbeam/core/text.h"
+#include "sunbeam/detail/text.h"
 
 namespace sunbeam {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "bake/recipe.h"
-#include "bake/verify.h"
+#include "bake/check/verify.h"
+#include "bake/recipe/recipe.h"
 
 namespace sunbeam {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "bake/parallel_tasks.h"
+#include "bake/base/parallel_tasks.h"
 #include "bake/report/appearance.h"
 #include "bake/report/chart.h"
 #include "bake/report/markup.h"

@@ -1,6 +1,6 @@
 #include "bake/report/slice.h"
 
-#include "bake/parallel_tasks.h"
+#include "bake/base/parallel_tasks.h"
 
 namespace sunbeam {
 

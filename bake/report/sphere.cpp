@@ -1,8 +1,8 @@
 #include "bake/report/sphere.h"
 
-#include "bake/parallel_tasks.h"
+#include "bake/base/parallel_tasks.h"
 #include "sunbeam/core/frame.h"
-#include "sunbeam/ggx.h"
+#include "sunbeam/detail/ggx.h"
 
 namespace sunbeam {
 namespace {

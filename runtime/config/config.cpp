@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "sunbeam/core/error.h"
-#include "sunbeam/core/file.h"
+#include "sunbeam/detail/file.h"
 
 namespace sunbeam {
 

@@ -1,6 +1,6 @@
 #include "runtime/tracer/camera.h"
 
-#include "sunbeam/core/warp.h"
+#include "sunbeam/detail/warp.h"
 
 namespace sunbeam {
 

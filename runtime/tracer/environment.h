@@ -2,8 +2,8 @@
 #pragma once
 
 #include "runtime/tracer/scene.h"
-#include "sunbeam/core/piecewise.h"
-#include "sunbeam/core/warp.h"
+#include "sunbeam/detail/piecewise.h"
+#include "sunbeam/detail/warp.h"
 
 namespace sunbeam {
 

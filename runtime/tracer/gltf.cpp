@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sunbeam/core/error.h"
-#include "sunbeam/core/file.h"
+#include "sunbeam/detail/file.h"
 
 namespace sunbeam {
 namespace {

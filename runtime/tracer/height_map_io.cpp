@@ -14,7 +14,7 @@
 
 #include "runtime/tracer/height_map.h"
 #include "sunbeam/core/error.h"
-#include "sunbeam/core/file.h"
+#include "sunbeam/detail/file.h"
 
 namespace sunbeam {
 namespace {

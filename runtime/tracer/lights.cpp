@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "sunbeam/core/frame.h"
-#include "sunbeam/core/warp.h"
+#include "sunbeam/detail/warp.h"
 
 namespace sunbeam {
 namespace {

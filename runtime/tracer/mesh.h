@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sunbeam/core/vec.h"
-#include "sunbeam/core/warp.h"
+#include "sunbeam/detail/warp.h"
 
 namespace sunbeam {
 

@@ -7,7 +7,7 @@
 #include "runtime/tracer/obj.h"
 #include "runtime/tracer/ply.h"
 #include "sunbeam/core/error.h"
-#include "sunbeam/core/file.h"
+#include "sunbeam/detail/file.h"
 
 namespace sunbeam {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "runtime/tracer/height_map.h"
-#include "sunbeam/core/warp.h"
+#include "sunbeam/detail/warp.h"
 
 namespace sunbeam {
 

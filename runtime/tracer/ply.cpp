@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "sunbeam/core/error.h"
-#include "sunbeam/core/file.h"
+#include "sunbeam/detail/file.h"
 
 namespace sunbeam {
 namespace {

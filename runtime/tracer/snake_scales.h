@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "sunbeam/core/warp.h"
+#include "sunbeam/detail/warp.h"
 
 namespace sunbeam {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "bake/sweep.h"
-#include "sunbeam/core/text.h"
+#include "bake/jobs/bake.h"
+#include "sunbeam/detail/text.h"
 #include "sunbeam/table_bsdf.h"
 
 namespace sunbeam::test {

@@ -14,11 +14,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "bake/run_tasks.h"
-#include "bake/sweep.h"
-#include "bake/walked_job.h"
-#include "sunbeam/core/file.h"
+#include "bake/blocks/run.h"
+#include "bake/dense/walked_job.h"
+#include "bake/jobs/bake.h"
 #include "sunbeam/core/rng.h"
+#include "sunbeam/detail/file.h"
 #include "tests/bench/account.h"
 #include "tests/bench/child_process.h"
 

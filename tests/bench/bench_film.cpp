@@ -9,7 +9,7 @@
 
 #include <string>
 
-#include "runtime/src/film_kernels.h"
+#include "runtime/src/film/film_kernels.h"
 
 namespace sunbeam {
 namespace {

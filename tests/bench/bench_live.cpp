@@ -10,7 +10,7 @@
 
 #include <array>
 
-#include "bake/live/exact_bsdf.h"
+#include "bake/live/exact/exact_bsdf.h"
 #include "bake/live/live_bsdf.h"
 #include "tests/bench/account.h"
 #include "tests/support/materials.h"

@@ -13,8 +13,8 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "bake/recipe.h"
-#include "bake/sweep.h"
+#include "bake/jobs/bake.h"
+#include "bake/recipe/recipe.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/table_io.h"
 #include "tests/bench/child_process.h"

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "bake/live/exact_bsdf.h"
+#include "bake/jobs/bake.h"
+#include "bake/live/exact/exact_bsdf.h"
 #include "bake/live/live_bsdf.h"
-#include "bake/recipe.h"
-#include "bake/sweep.h"
-#include "sunbeam/lambert.h"
+#include "bake/recipe/recipe.h"
+#include "runtime/tracer/lambert.h"
 #include "sunbeam/table_bsdf.h"
 #include "sunbeam/table_io.h"
 #include "sunbeam/textured_table.h"

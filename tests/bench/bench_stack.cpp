@@ -8,7 +8,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bake/live/pfmc.h"
-#include "bake/live/spectrum.h"
+#include "bake/optics/spectrum.h"
 #include "tests/bench/account.h"
 
 namespace sunbeam {

@@ -13,9 +13,9 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "bake/live/exact_bsdf.h"
-#include "bake/recipe.h"
-#include "bake/sweep.h"
+#include "bake/jobs/bake.h"
+#include "bake/live/exact/exact_bsdf.h"
+#include "bake/recipe/recipe.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/table_bsdf.h"
 #include "sunbeam/table_io.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sunbeam/bsdf.h"
-#include "sunbeam/core/warp.h"
+#include "sunbeam/detail/warp.h"
 #include "tests/bench/account.h"
 #include "tests/bench/yardstick.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sunbeam/bsdf.h"
-#include "sunbeam/core/warp.h"
+#include "sunbeam/detail/warp.h"
 
 namespace sunbeam {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "bake/recipe.h"
+#include "bake/recipe/recipe.h"
 #include "sunbeam/table.h"
 #include "tests/support/stats.h"
 

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "bake/cell.h"
+#include "bake/base/running_mean.h"
 #include "sunbeam/bsdf.h"
 
 namespace sunbeam {

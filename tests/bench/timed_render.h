@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/cli/scene_materials.h"
+#include "bake/scene/materials.h"
 #include "runtime/tracer/render.h"
 #include "tests/bench/embree_ceiling.h"
 

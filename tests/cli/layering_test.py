@@ -115,7 +115,7 @@ class Layering(unittest.TestCase):
     def test_the_exceptions_are_used(self):
         """Embree and OpenVDB are included where they are allowed, so the search finds them."""
         includes = {path: includes_of(SOURCE_DIR, path) for path in product_sources()}
-        for file, library in (("runtime/tracer/embree_api.h", "embree"), ("runtime/src/table_vdb.cpp", "openvdb")):
+        for file, library in (("runtime/tracer/embree_api.h", "embree"), ("runtime/src/table/table_vdb.cpp", "openvdb")):
             self.assertTrue(any(include.startswith(library) for include in includes[file]), (file, library))
         calls = EMBREE_CALL.findall((SOURCE_DIR / "runtime/tracer/embree_scene.cpp").read_text())
         self.assertGreater(len(calls), 5)
@@ -144,20 +144,20 @@ class RulesCanFail(unittest.TestCase):
     """Each rule finds a violation that is planted in a small tree."""
 
     PLANTED = {
-        "runtime knows nothing of bake": ("runtime/src/a.cpp", '#include "bake/recipe.h"'),
+        "runtime knows nothing of bake": ("runtime/src/a.cpp", '#include "bake/recipe/recipe.h"'),
         "core headers include core and the standard library only":
             ("runtime/include/sunbeam/core/a.h", '#include "sunbeam/bsdf.h"'),
         "public headers include public headers and the standard library only":
             ("runtime/include/sunbeam/a.h", "#include <ImfHeader.h>"),
-        "tables know nothing of the tracer": ("runtime/src/table.cpp", '#  include "../tracer/scene.h"'),
-        "tables know nothing of configuration files": ("runtime/src/table.cpp", "#include <toml++/toml.h>"),
+        "tables know nothing of the tracer": ("runtime/src/table/table.cpp", '#  include "../tracer/scene.h"'),
+        "tables know nothing of configuration files": ("runtime/src/table/table.cpp", "#include <toml++/toml.h>"),
         "the tracer knows nothing of tables": ("runtime/tracer/a.cpp", '#include "sunbeam/table_bsdf.h"'),
         "only embree_* includes Embree": ("runtime/tracer/render.cpp", "#include <embree3/rtcore.h>"),
-        "only *_vdb.cpp includes OpenVDB": ("runtime/src/table.cpp", "#include <openvdb/openvdb.h>"),
+        "only *_vdb.cpp includes OpenVDB": ("runtime/src/table/table.cpp", "#include <openvdb/openvdb.h>"),
         "optics stand alone in bake": ("bake/optics/a.cpp", '#include "../cell.h"'),
-        "the live model stands on optics only": ("bake/live/a.cpp", '#include "bake/sweep.h"'),
+        "the live model stands on optics only": ("bake/live/a.cpp", '#include "bake/jobs/bake.h"'),
         "the live model knows nothing of tables": ("bake/live/a.cpp", '#include "sunbeam/table.h"'),
-        "comparing pictures needs pictures only": ("bake/compare/a.cpp", '#include "bake/recipe.h"'),
+        "comparing pictures needs pictures only": ("bake/compare/a.cpp", '#include "bake/recipe/recipe.h"'),
         "the library bake knows nothing of the command line": ("bake/a.cpp", '#include "bake/cli/progress.h"'),
     }
 
@@ -166,7 +166,7 @@ class RulesCanFail(unittest.TestCase):
         for name, (path, line) in self.PLANTED.items():
             with self.subTest(rule=name), tempfile.TemporaryDirectory() as folder:
                 root = pathlib.Path(folder)
-                existing = ("bake/recipe.h", "bake/sweep.h", "bake/cell.h", "bake/cli/progress.h",
+                existing = ("bake/recipe/recipe.h", "bake/jobs/bake.h", "bake/base/running_mean.h", "bake/cli/progress.h",
                             "runtime/tracer/scene.h", "runtime/include/sunbeam/bsdf.h",
                             "runtime/include/sunbeam/table.h", "runtime/include/sunbeam/table_bsdf.h")
                 for file in (*existing, path):

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "sunbeam/core/warp.h"
+#include "sunbeam/detail/warp.h"
 #include "sunbeam/table_bsdf.h"
 #include "sunbeam/table_io.h"
 #include "sunbeam/textured_table.h"

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "runtime/tracer/image_io.h"
-#include "sunbeam/core/file.h"
+#include "sunbeam/detail/file.h"
 #include "tests/render/support.h"
 
 namespace sunbeam {

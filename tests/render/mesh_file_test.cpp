@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "runtime/tracer/snake.h"
-#include "sunbeam/core/file.h"
+#include "sunbeam/detail/file.h"
 #include "tests/render/support.h"
 
 namespace sunbeam {

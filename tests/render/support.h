@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "runtime/tracer/lambert.h"
 #include "runtime/tracer/render.h"
 #include "runtime/tracer/scene.h"
 #include "sunbeam/core/error.h"
-#include "sunbeam/lambert.h"
 #include "tests/support/scratch_folder.h"
 
 namespace sunbeam {

@@ -8,7 +8,7 @@
 #include "runtime/tracer/obj.h"
 #include "runtime/tracer/tangents.h"
 #include "sunbeam/core/frame.h"
-#include "sunbeam/core/warp.h"
+#include "sunbeam/detail/warp.h"
 #include "tests/render/support.h"
 
 namespace sunbeam {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "sunbeam/bsdf.h"
-#include "sunbeam/core/warp.h"
+#include "sunbeam/detail/warp.h"
 #include "tests/support/stats.h"
 
 namespace sunbeam::test {

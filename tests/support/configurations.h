@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake/live/spectrum.h"
+#include "bake/optics/spectrum.h"
 #include "tests/support/materials.h"
 
 namespace sunbeam::test {

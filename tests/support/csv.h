@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sunbeam/core/text.h"
+#include "sunbeam/detail/text.h"
 #include "sunbeam/material.h"
 
 namespace sunbeam::test {

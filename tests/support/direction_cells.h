@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sunbeam/core/warp.h"
+#include "sunbeam/detail/warp.h"
 #include "tests/support/bsdf_checks.h"
 
 namespace sunbeam::test {

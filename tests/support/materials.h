@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "sunbeam/detail/wavelengths.h"
 #include "sunbeam/material.h"
-#include "sunbeam/wavelengths.h"
 
 namespace sunbeam::test {
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "sunbeam/core/rng.h"
-#include "sunbeam/core/warp.h"
+#include "sunbeam/detail/warp.h"
 #include "sunbeam/material.h"
 
 namespace sunbeam {

@@ -8,9 +8,9 @@
 #include <limits>
 #include <optional>
 
-#include "bake/live/film_interface.h"
+#include "bake/live/film/film_interface.h"
 #include "sunbeam/core/rng.h"
-#include "sunbeam/core/warp.h"
+#include "sunbeam/detail/warp.h"
 #include "tests/support/direction_cells.h"
 
 namespace sunbeam::test {

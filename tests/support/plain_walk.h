@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "bake/live/film_interface.h"
+#include "bake/live/film/film_interface.h"
 #include "tests/support/plain_base.h"
 
 namespace sunbeam::test {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "sunbeam/core/vec.h"
-#include "sunbeam/roughness.h"
+#include "sunbeam/detail/roughness.h"
 
 namespace sunbeam {
 

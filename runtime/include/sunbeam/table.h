@@ -35,11 +35,11 @@
 #include <string>
 #include <vector>
 
-#include "sunbeam/angles.h"
 #include "sunbeam/core/color_space.h"
-#include "sunbeam/factors.h"
+#include "sunbeam/detail/angles.h"
+#include "sunbeam/detail/factors.h"
+#include "sunbeam/detail/nd_array.h"
 #include "sunbeam/material.h"
-#include "sunbeam/nd_array.h"
 #include "sunbeam/parameters.h"
 
 namespace sunbeam {

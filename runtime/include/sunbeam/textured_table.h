@@ -42,10 +42,10 @@
 #include <span>
 
 #include "sunbeam/bsdf.h"
-#include "sunbeam/power_density.h"
+#include "sunbeam/detail/power_density.h"
+#include "sunbeam/detail/textured_point.h"
 #include "sunbeam/table.h"
 #include "sunbeam/table_bsdf.h"
-#include "sunbeam/textured_point.h"
 
 namespace sunbeam {
 

@@ -1,0 +1,75 @@
+// A bake as independent tasks. Each makes one block of values, with the same bits whatever runs before or
+// beside it, in which process and on how many threads; the table is made of the blocks once all are there. So
+// a bake may be killed and resumed, or dealt out to many machines.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bake/recipe/recipe.h"
+#include "sunbeam/table_io.h"
+
+namespace sunbeam {
+
+struct BlockSummary {
+  std::uint64_t walks = 0;
+  double worst_error = 0;  // largest relative standard error of a value that the bake aims at
+};
+
+struct Block {
+  BlockSummary summary;
+  std::string values;  // bytes that the job alone understands
+};
+
+// Finished blocks, by task. All functions may be called by many threads.
+class Blocks {
+ public:
+  virtual ~Blocks() = default;
+  virtual bool has(std::size_t task) const = 0;
+  virtual BlockSummary summary(std::size_t task) const = 0;
+  // Throws Error if the block cannot be read back.
+  virtual std::string values(std::size_t task) const = 0;
+};
+
+struct TaskRange {
+  std::size_t first, end;
+  std::size_t size() const { return end - first; }
+};
+
+class BakeJob {
+ public:
+  virtual ~BakeJob() = default;
+
+  virtual std::size_t tasks() const = 0;
+  // Rough forecast of the seconds a core spends on a task. Its proportions say how far a bake is; it depends
+  // on the recipe alone.
+  virtual double cost(std::size_t task) const = 0;
+
+  // First tasks of the groups that share a preparation.
+  virtual std::vector<std::size_t> groups() const { return {0}; }
+  // Before any of `tasks`, which are of one group; what was prepared before may be forgotten.
+  virtual void prepare(const TaskRange& /*tasks*/, int /*threads*/) {}
+
+  // Thread safe, beside other tasks of its group.
+  virtual Block run(std::size_t task) const = 0;
+
+  // Made of all blocks. A dense table is an outline (table_io.h), and cells() has its values; the blocks must
+  // outlive them.
+  virtual Table table(const Blocks& blocks) const = 0;
+  virtual std::unique_ptr<DenseCells> cells(const Blocks& /*blocks*/) const { return nullptr; }
+};
+
+// In the order of tasks, the whole of which `job` counts.
+std::uint64_t total_walks(const BakeJob& job, const Blocks& blocks);
+
+inline Symmetry symmetry_of(const Recipe& recipe) {
+  return recipe.material.roughness.is_isotropic() ? Symmetry::isotropic : Symmetry::anisotropic;
+}
+
+// Attributes of a table but for its measured error.
+std::map<std::string, std::string> info_of(const Recipe& recipe, Encoding encoding, std::uint64_t seed,
+                                           std::uint64_t walks, const char* estimator);
+
+}  // namespace sunbeam

@@ -1,0 +1,352 @@
+#include "bake/check/eval_csv.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <memory>
+#include <ostream>
+#include <set>
+
+#include "bake/base/running_mean.h"
+#include "bake/check/csv.h"
+#include "bake/live/exact/exact.h"
+#include "bake/live/pfmc.h"
+#include "sunbeam/core/error.h"
+#include "sunbeam/table_bsdf.h"
+
+namespace sunbeam {
+namespace {
+
+// One result: a colour (three columns, or one where monochromatic) or a single number.
+struct Result {
+  const char* name;
+  Rgb value;
+  bool is_scalar = false;
+};
+using Results = std::vector<Result>;
+
+struct Point {
+  Vec3 wi, wo;
+  std::optional<double> wavelength_nm;
+  std::size_t stream;
+};
+
+std::vector<std::string> result_names(Quantity quantity, bool monochromatic) {
+  const auto expand = [&](std::initializer_list<const char*> names) {
+    std::vector<std::string> columns;
+    for (const std::string name : names) {
+      if (monochromatic || name == "pdf")
+        columns.push_back(name);
+      else
+        for (const char* suffix : {"_r", "_g", "_b"}) columns.push_back(name + suffix);
+    }
+    return columns;
+  };
+  if (quantity == Quantity::brdf) return expand({"first", "rest", "stderr", "pdf", "dirac"});
+  if (quantity == Quantity::albedo) return expand({"total", "stderr"});
+  return expand({"reflectance"});
+}
+
+// The columns of one CSV, found and checked once.
+class PointReader {
+ public:
+  PointReader(const Csv& csv, Quantity quantity) : csv_(csv), wavelength_(csv.column("wavelength_nm")) {
+    theta_i_ = require("theta_i_deg");
+    if (quantity == Quantity::brdf) {
+      theta_o_ = require("theta_o_deg");
+      phi_ = require("phi_deg");
+      phi_i_ = csv.column("phi_i_deg");
+    }
+    for (const auto& name : result_names(quantity, is_monochromatic()))
+      if (csv.column(name))
+        throw Error(fmt::format("{}: column '{}' has the name of an output column", csv.name, name));
+    for (std::size_t k = 0; k < csv.header.size(); ++k)
+      if (std::find(material_keys().begin(), material_keys().end(), csv.header[k]) != material_keys().end())
+        material_columns_.push_back(k);
+  }
+
+  bool is_monochromatic() const { return wavelength_.has_value(); }
+  const std::vector<std::size_t>& material_columns() const { return material_columns_; }
+
+  Point point(std::size_t row_index) const {
+    const CsvRow& row = csv_.rows[row_index];
+    const double phi_i = phi_i_ ? azimuth_deg(row, *phi_i_) : 0;
+    Point point{polar(row, theta_i_, phi_i), {0, 0, 1}, {}, row_index};
+    if (theta_o_) point.wo = polar(row, *theta_o_, phi_i + azimuth_deg(row, *phi_));
+    if (wavelength_) point.wavelength_nm = csv_.number(row, *wavelength_, 100, 10000, true);
+    return point;
+  }
+
+  Material material(std::size_t row_index, Material material) const {
+    const CsvRow& row = csv_.rows[row_index];
+    for (const std::size_t k : material_columns_) {
+      try {
+        set_from_text(material, csv_.header[k], row.cells[k]);
+      } catch (const Error& error) {
+        throw Error(fmt::format("{}:{}: {}", csv_.name, row.line, error.what()));
+      }
+    }
+    if (const auto defect = material.defect())
+      throw Error(fmt::format("{}:{}: {}", csv_.name, row.line, defect->message()));
+    return material;
+  }
+
+ private:
+  std::size_t require(const std::string& key) const {
+    const auto column = csv_.column(key);
+    if (!column)
+      throw Error(
+          fmt::format("{}: column '{}' is missing; found: {}", csv_.name, key, fmt::join(csv_.header, ", ")));
+    return *column;
+  }
+  double azimuth_deg(const CsvRow& row, std::size_t column) const {
+    return csv_.number(row, column, -3600, 3600, true);
+  }
+  Vec3 polar(const CsvRow& row, std::size_t theta, double phi_deg) const {
+    return spherical_direction(csv_.number(row, theta, 0, 90, false) * kPi / 180, phi_deg * kPi / 180);
+  }
+
+  const Csv& csv_;
+  std::size_t theta_i_ = 0;
+  std::optional<std::size_t> theta_o_, phi_, phi_i_, wavelength_;
+  std::vector<std::size_t> material_columns_;
+};
+
+// A value and its standard error, per channel.
+struct Estimate {
+  Rgb value, standard_error;
+};
+
+template <class Call>
+Estimate mean_of_estimates(std::int64_t samples, Call call) {
+  Cell cell;
+  for (std::int64_t k = 0; k < samples; ++k) cell.add(call());
+  const auto count = static_cast<double>(samples);
+  return {cell.mean_of(count), cell.standard_error(count)};
+}
+
+// The rows of a live recipe at one material, by PFMC or exactly.
+class LivePoint {
+ public:
+  LivePoint(const Material& material, const Wavelengths& wavelengths, const Point& point,
+            const PointsSettings& settings)
+      : point_(point),
+        samples_(settings.samples),
+        model_(material, wavelengths),
+        technique_(technique_of(settings.estimator)),
+        rng_(settings.seed, point.stream) {
+    if (settings.estimator == Estimator::exact && settings.quantity != Quantity::film)
+      exact_.emplace(material, wavelengths);
+  }
+
+  Results brdf() {
+    const Estimate rest = exact_ ? Estimate{exact_->rest(point_.wo, point_.wi), Rgb()} : walked_rest();
+    return {{"first", model_.first(point_.wo, point_.wi)},
+            {"rest", rest.value},
+            {"stderr", rest.standard_error},
+            {"pdf", walked_pdf(), true},
+            {"dirac", model_.dirac(point_.wi)}};
+  }
+
+  Results albedo() {
+    const Estimate total = exact_ ? Estimate{exact_->albedo(point_.wi), Rgb()} : walked_albedo();
+    return {{"total", total.value}, {"stderr", total.standard_error}};
+  }
+
+  Results film() const { return {{"reflectance", model_.film_reflectance(point_.wi.z)}}; }
+
+ private:
+  Estimate walked_rest() {
+    return mean_of_estimates(samples_,
+                             [&] { return model_.estimate_rest(point_.wo, point_.wi, rng_, technique_); });
+  }
+  Rgb walked_pdf() {
+    return mean_of_estimates(samples_, [&] { return Rgb(model_.estimate_pdf(point_.wo, point_.wi, rng_)); })
+        .value;
+  }
+
+  // The Dirac part exactly, everything else from walks.
+  Estimate walked_albedo() {
+    Estimate total = mean_of_estimates(samples_, [&] {
+      const auto sample = model_.sample(point_.wi, rng_);
+      return sample && !sample->is_dirac ? sample->throughput : Rgb();
+    });
+    total.value += model_.dirac(point_.wi);
+    return total;
+  }
+
+  Point point_;
+  std::int64_t samples_;
+  Pfmc model_;
+  Technique technique_;
+  std::optional<ExactRest> exact_;
+  Rng rng_;
+};
+
+Results live_results(const Material& material, const Wavelengths& wavelengths, const Point& point,
+                     const PointsSettings& settings) {
+  LivePoint live(material, wavelengths, point, settings);
+  if (settings.quantity == Quantity::brdf) return live.brdf();
+  return settings.quantity == Quantity::albedo ? live.albedo() : live.film();
+}
+
+Results table_results(const TableBsdf& bsdf, const Point& point, Quantity quantity) {
+  if (quantity == Quantity::film) return {{"reflectance", bsdf.film_reflectance(point.wi.z)}};
+  if (quantity == Quantity::albedo) return {{"total", bsdf.albedo(point.wi)}, {"stderr", Rgb()}};
+  return {{"first", bsdf.first(point.wo, point.wi)},
+          {"rest", bsdf.rest(point.wo, point.wi)},
+          {"stderr", bsdf.rest_stderr(point.wo, point.wi)},
+          {"pdf", Rgb(bsdf.mis_pdf(point.wo, point.wi)), true},
+          {"dirac", bsdf.dirac(point.wi)}};
+}
+
+// The channel of an rgb3 table that holds this wavelength.
+int table_channel(const Csv& csv, const CsvRow& row, double wavelength_nm) {
+  const std::vector<double> nm = Wavelengths::rgb3({}).nm;
+  const auto at = std::find(nm.begin(), nm.end(), wavelength_nm);
+  if (at != nm.end()) return static_cast<int>(at - nm.begin());
+  throw Error(fmt::format("{}:{}: column 'wavelength_nm': found {:g}; this table holds {:g}", csv.name,
+                          row.line, wavelength_nm, fmt::join(nm, ", ")));
+}
+
+void append(std::string& line, const Results& results, std::optional<int> channel) {
+  for (const Result& result : results) {
+    if (result.is_scalar || channel)
+      line += fmt::format(",{:.17g}", result.value[result.is_scalar ? 0 : *channel]);
+    else
+      line += fmt::format(",{:.17g},{:.17g},{:.17g}", result.value.r, result.value.g, result.value.b);
+  }
+}
+
+// Evaluates every row in parallel and prints them in order; nothing is printed if any row is bad. Every block
+// of rows has its own copy of `results`, which may remember what the rows share.
+template <class RowResults>
+void print_rows(const Csv& csv, const PointReader& reader, Quantity quantity, std::ostream& out,
+                const RowResults& results) {
+  std::vector<std::string> lines(csv.rows.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, csv.rows.size()), [&](const auto& block) {
+    RowResults block_results = results;
+    for (std::size_t k = block.begin(); k < block.end(); ++k) {
+      const auto [values, channel] = block_results(k);
+      lines[k] = fmt::format("{}", fmt::join(csv.rows[k].cells, ","));
+      append(lines[k], values, channel);
+    }
+  });
+  out << fmt::format("{},{}\n", fmt::join(csv.header, ","),
+                     fmt::join(result_names(quantity, reader.is_monochromatic()), ","));
+  for (const auto& line : lines) out << line << '\n';
+}
+
+using RowAndChannel = std::pair<Results, std::optional<int>>;
+
+// Material and wavelengths of the rows of a live recipe.
+class LiveRows {
+  template <class Call>
+  auto naming_row(std::size_t k, Call call) const {
+    try {
+      return call();
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}:{}: {}", csv_.name, csv_.rows[k].line, error.what()));
+    }
+  }
+
+ public:
+  LiveRows(const Material& material, const Spectrum& spectrum, const Csv& csv, const PointReader& reader)
+      : material_(material), spectrum_(spectrum), csv_(csv), reader_(reader) {}
+
+  Material material(std::size_t k) const {
+    Material row = reader_.material(k, material_);
+    if (csv_.column("albedo")) row.albedo = spectrum_.from_rec709(row.albedo);
+    return row;
+  }
+
+  Wavelengths wavelengths(std::size_t k) const {
+    const auto nm = reader_.point(k).wavelength_nm;
+    const Material row = material(k);
+    return naming_row(k, [&] { return nm ? spectrum_.monochromatic(row, *nm) : spectrum_.wavelengths(row); });
+  }
+
+  // What `wanted` stands for in this row.
+  Estimator estimator(std::size_t k, Estimator wanted) const {
+    return naming_row(k, [&] { return estimator_for_eval(wanted, material(k)); });
+  }
+
+ private:
+  const Material& material_;
+  const Spectrum& spectrum_;
+  const Csv& csv_;
+  const PointReader& reader_;
+};
+
+// Rows of a table. Binding it to parameters costs far more than a look-up, and rows mostly share theirs.
+class TableRows {
+ public:
+  TableRows(const Table& table, const Csv& csv, const PointReader& reader, Quantity quantity)
+      : table_(table), csv_(csv), reader_(reader), quantity_(quantity) {}
+
+  RowAndChannel operator()(std::size_t k) {
+    const Point point = reader_.point(k);
+    std::optional<int> channel;
+    if (point.wavelength_nm) channel = table_channel(csv_, csv_.rows[k], *point.wavelength_nm);
+    bind(k, Parameters::of(reader_.material(k, table_.material)));
+    return {table_results(*bsdf_, point, quantity_), channel};
+  }
+
+ private:
+  void bind(std::size_t k, const Parameters& parameters) {
+    if (bsdf_ && Parameters::of(bsdf_->material()).values() == parameters.values()) return;
+    try {
+      bsdf_ = std::make_shared<TableBsdf>(table_, parameters, OutsideGrid::refuse);
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}:{}: {}", csv_.name, csv_.rows[k].line, error.what()));
+    }
+  }
+
+  const Table& table_;
+  const Csv& csv_;
+  const PointReader& reader_;
+  Quantity quantity_;
+  std::shared_ptr<const TableBsdf> bsdf_;
+};
+
+}  // namespace
+
+std::set<std::string> evaluate_points_live(const Material& material, const Spectrum& spectrum,
+                                           std::istream& in, const std::string& name,
+                                           const PointsSettings& settings, std::ostream& out) {
+  const Csv csv = read_csv(in, name);
+  const PointReader reader(csv, settings.quantity);
+  const LiveRows rows(material, spectrum, csv, reader);
+  std::set<std::string> used;
+  for (std::size_t k = 0; k < csv.rows.size(); ++k) {
+    rows.wavelengths(k);
+    used.insert(name_of(rows.estimator(k, settings.estimator)));
+  }
+  print_rows(csv, reader, settings.quantity, out, [&](std::size_t k) -> RowAndChannel {
+    const Point point = reader.point(k);
+    PointsSettings of_row = settings;
+    of_row.estimator = rows.estimator(k, settings.estimator);
+    return {live_results(rows.material(k), rows.wavelengths(k), point, of_row),
+            point.wavelength_nm ? std::optional(0) : std::nullopt};
+  });
+  return used;
+}
+
+void evaluate_points_table(const Table& table, std::istream& in, const std::string& name,
+                           const PointsSettings& settings, std::ostream& out) {
+  const Csv csv = read_csv(in, name);
+  const PointReader reader(csv, settings.quantity);
+  for (const std::size_t k : reader.material_columns())
+    if (std::find(kParameterNames.begin(), kParameterNames.end(), csv.header[k]) == kParameterNames.end())
+      throw Error(fmt::format("{}: column '{}' is fixed in a table; a table's row may set {}", name,
+                              csv.header[k], fmt::join(kParameterNames, ", ")));
+  if (reader.is_monochromatic() && table.is_full_spectrum())
+    throw Error(name +
+                ": column 'wavelength_nm': the table's spectrum is \"full\", so it holds folded colours, no "
+                "wavelengths; evaluate its recipe instead");
+  print_rows(csv, reader, settings.quantity, out, TableRows(table, csv, reader, settings.quantity));
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,269 @@
+#include "bake/check/verify.h"
+
+#include <optional>
+
+#include "bake/base/parallel_tasks.h"
+#include "bake/base/running_mean.h"
+#include "bake/dense/table_around.h"
+#include "bake/live/adding_doubling/slab_solver.h"
+#include "bake/live/exact/exact.h"
+#include "bake/live/pfmc.h"
+#include "sunbeam/table_bsdf.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr std::size_t kDirections = 64;  // wo a point
+constexpr int kMostAttempts = 4096;      // to draw them
+constexpr int kFirstPilot = 16;  // estimates that tell how many a live run needs; doubled until it can
+constexpr int kPilotReach = 8;   // times as many
+constexpr int kBatches = 16;
+constexpr double kMostEstimates = 1 << 14;  // of a live run at a median tolerance of 1 %
+constexpr double kFloorMargin = 0.85;       // of the floor promised is aimed at
+
+double draw(const Axis& axis, Rng& rng) { return lerp(rng.uniform(), axis.low(), axis.high()); }
+
+// Directions drawn from the table's own density for the viewer at wi (reciprocity makes the roles equal).
+struct Directions {
+  std::vector<Vec3> wo;
+  std::vector<double> weight;  // cos / (pdf attempts)
+};
+
+Directions draw_directions(const TableBsdf& bsdf, const Vec3& wi, Rng& rng) {
+  Directions result;
+  int attempts = 0;
+  // Dirac and lost draws count as attempts; they carry nothing of the non-Dirac integral.
+  for (; attempts < kMostAttempts && result.wo.size() < kDirections; ++attempts) {
+    const auto sample = bsdf.sample(wi, rng);
+    if (!sample || sample->is_dirac) continue;
+    result.wo.push_back(sample->wi);
+    result.weight.push_back(sample->wi.z / bsdf.mis_pdf(wi, sample->wi));
+  }
+  for (double& weight : result.weight) weight /= attempts;
+  return result;
+}
+
+// Rest at every direction by live walks, and the mean |difference| to expect from a second such run.
+struct WalkedRest {
+  std::vector<Rgb> value, expected_difference;
+};
+
+// Batches of walks tell the noise of their mean; for a normal one of variance v, E |difference| = 2 sqrt(v /
+// pi).
+WalkedRest walk_rest(const Pfmc& model, Technique technique, const Vec3& wi, const std::vector<Vec3>& wo,
+                     int estimates, Rng& rng) {
+  const int batch_estimates = estimates / kBatches;
+  std::vector<Cell> cells(wo.size());
+  for (int batch = 0; batch < kBatches; ++batch) {
+    std::vector<Rgb> sums(wo.size());
+    for (int k = 0; k < batch_estimates; ++k) model.add_rest(wi, wo, rng, sums, technique);
+    for (std::size_t k = 0; k < wo.size(); ++k) cells[k].add(sums[k] / batch_estimates);
+  }
+  WalkedRest rest;
+  for (const Cell& cell : cells) {
+    rest.value.push_back(cell.mean_of(kBatches));
+    rest.expected_difference.push_back(cell.standard_error(kBatches) * (2 / std::sqrt(kPi)));
+  }
+  return rest;
+}
+
+class PointCheck {
+ public:
+  PointCheck(const Table& table, const DenseCells* cells, const Spectrum& spectrum,
+             const VerifySettings& settings, std::uint64_t index)
+      : settings_(settings), rng_(settings.seed, index) {
+    point_.parameters = {draw(table.parameter_axis(0), rng_), draw(table.parameter_axis(1), rng_),
+                         draw(table.parameter_axis(2), rng_)};
+    point_.cos_i = lerp(rng_.uniform(), std::cos(89 * kPi / 180), 1);
+    if (table.symmetry == Symmetry::anisotropic) point_.phi_i = 2 * kPi * rng_.uniform();
+    wi_ = direction_from_cosine(point_.cos_i, point_.phi_i);
+    if (cells)
+      bind(table_around(table, *cells, point_.parameters));
+    else
+      bind(table);
+    wavelengths_ = spectrum.wavelengths(bsdf_->material());
+    model_.emplace(bsdf_->material(), wavelengths_);
+  }
+
+  VerifyPoint run() {
+    directions_ = draw_directions(*bsdf_, wi_, rng_);
+    measure_errors(settings_.truth == Estimator::exact ? exact_rest() : walked_rest());
+    point_.dirac_error =
+        max_component(transform(bsdf_->film_reflectance(wi_.z) - model_->film_reflectance(wi_.z),
+                                [](double x) { return std::abs(x); }));
+    point_.albedo = max_component(bsdf_->albedo(wi_));
+    return point_;
+  }
+
+ private:
+  // What a table states of itself must not depend on the processor.
+  void bind(const Table& table) {
+    bsdf_.emplace(table, point_.parameters, OutsideGrid::refuse, Arithmetic::reproducible);
+  }
+
+  // The number of walks follows the floor that a pilot expects, not that of the runs themselves: stopping at
+  // runs that happen to agree would report one that is too low.
+  std::vector<Rgb> walked_rest() {
+    const int estimates = estimates_needed();
+    const auto walk = [&](int count) {
+      return walk_rest(*model_, technique_of(settings_.truth), wi_, directions_.wo, count, rng_);
+    };
+    const std::vector<Rgb> live = walk(estimates).value;
+    auto difference = walk(estimates).value;
+    for (std::size_t k = 0; k < difference.size(); ++k) difference[k] = live[k] - difference[k];
+    point_.noise_floor = weighted(difference) / denominator(live);
+    return live;
+  }
+
+  int estimates_needed() {
+    const double most = kMostEstimates * square(0.01 / settings_.tolerance_median);
+    for (int pilot = kFirstPilot;; pilot *= 2) {
+      const WalkedRest rest =
+          walk_rest(*model_, technique_of(settings_.truth), wi_, directions_.wo, pilot, rng_);
+      const double floor = weighted(rest.expected_difference) / denominator(rest.value);
+      const double needed = pilot * square(floor / (kFloorMargin * settings_.tolerance_median / 3));
+      const double reach = std::min<double>(kPilotReach * pilot, most);
+      if (needed <= reach || reach == most)
+        return kBatches * static_cast<int>(std::ceil(std::clamp(needed, 1.0, most) / kBatches));
+    }
+  }
+
+  std::vector<Rgb> exact_rest() const {
+    if (bsdf_->material().scatters()) return solved_rest();
+    return ExactRest(bsdf_->material(), wavelengths_).rest(directions_.wo, wi_);
+  }
+
+  std::vector<Rgb> solved_rest() const {
+    std::vector<double> cosines{wi_.z};
+    for (const Vec3& wo : directions_.wo) cosines.push_back(wo.z);
+    SlabSolver solver(bsdf_->material(), cosines);
+    const double depth = bsdf_->material().optical_depth();
+    for (const double relative : wavelengths_.absorption) solver.add_depth(depth * relative);
+    const auto rest = SlabSolver::Film(solver, point_.parameters.film_thickness_nm, wavelengths_).rest(depth);
+    std::vector<Rgb> live;
+    for (std::size_t k = 0; k < directions_.wo.size(); ++k)
+      live.push_back(rest.at(k + 1, 0, azimuth(directions_.wo[k]) - point_.phi_i));
+    return live;
+  }
+
+  // Int |value| cos dwo.
+  double weighted(const std::vector<Rgb>& values) const {
+    double total = 0;
+    for (std::size_t k = 0; k < values.size(); ++k) total += directions_.weight[k] * mean_abs(values[k]);
+    return total;
+  }
+
+  double denominator(const std::vector<Rgb>& live) const {
+    double total = 0;
+    for (std::size_t k = 0; k < live.size(); ++k)
+      total += directions_.weight[k] * mean_abs(model_->first(directions_.wo[k], wi_) + live[k]);
+    return std::max(total, kDarkestAlbedo);
+  }
+
+  void measure_errors(const std::vector<Rgb>& live) {
+    double all = 0, rest = 0, rest_total = 0;
+    for (std::size_t k = 0; k < live.size(); ++k) {
+      const Vec3& wo = directions_.wo[k];
+      const Rgb rest_difference = bsdf_->rest(wo, wi_) - live[k];
+      const Rgb first_difference = bsdf_->first(wo, wi_) - model_->first(wo, wi_);
+      all += directions_.weight[k] * mean_abs(first_difference + rest_difference);
+      rest += directions_.weight[k] * mean_abs(rest_difference);
+      rest_total += directions_.weight[k] * mean_abs(live[k]);
+      check_reciprocity(wo);
+    }
+    point_.error = all / denominator(live);
+    point_.rest_error = rest / std::max(rest_total, kDarkestAlbedo);
+  }
+
+  void check_reciprocity(const Vec3& wo) {
+    const Rgb forward = bsdf_->eval(wo, wi_, rng_), backward = bsdf_->eval(wi_, wo, rng_);
+    for (int c = 0; c < 3; ++c) {
+      const double scale = std::max({std::abs(forward[c]), std::abs(backward[c]), kDarkestValue});
+      point_.reciprocity = std::max(point_.reciprocity, std::abs(forward[c] - backward[c]) / scale);
+    }
+  }
+
+  const VerifySettings& settings_;
+  Rng rng_;
+  VerifyPoint point_;
+  Vec3 wi_;
+  std::optional<TableBsdf> bsdf_;
+  Wavelengths wavelengths_;
+  std::optional<Pfmc> model_;
+  Directions directions_;
+};
+
+template <class Member>
+Quantiles quantiles(const std::vector<VerifyPoint>& points, Member member) {
+  std::vector<double> values;
+  for (const auto& point : points) values.push_back(point.*member);
+  return {quantile(values, 0.5), quantile(values, 0.95), quantile(values, 0.99), quantile(values, 1)};
+}
+
+}  // namespace
+
+double quantile(std::vector<double> values, double q) {
+  const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(values.size())));
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+Estimator default_truth(const Recipe& recipe) {
+  constexpr double kFinestByWalks = 0.005;  // finer, PFMC would take hours to show
+  if ((ExactRest::is_valid_for(recipe.material) || SlabSolver::solves(recipe.material)) &&
+      recipe.accuracy.tolerance_median < kFinestByWalks)
+    return Estimator::exact;
+  return recipe.material.scatters() ? recipe.accuracy.estimator : Estimator::pfmc;
+}
+
+namespace {
+
+VerifyReport verify(const Table& table, const DenseCells* cells, const VerifySettings& settings) {
+  estimator_for_truth(settings.truth, table.material);  // throws if it has none
+  const Spectrum spectrum = parse_recipe(table.info.at("recipe"), "recipe of the table").spectrum;
+  VerifyReport report;
+  report.truth = name_of(settings.truth);
+  report.points.resize(static_cast<std::size_t>(settings.points));
+  run_parallel_tasks(report.points.size(), settings.threads, settings.on_progress, [&](std::size_t k) {
+    report.points[k] = PointCheck(table, cells, spectrum, settings, k).run();
+  });
+  report.error = quantiles(report.points, &VerifyPoint::error);
+  report.rest_error = quantiles(report.points, &VerifyPoint::rest_error);
+  report.noise_floor = quantiles(report.points, &VerifyPoint::noise_floor);
+  report.dirac_error_p99 = quantiles(report.points, &VerifyPoint::dirac_error).p99;
+  report.energy_max = quantiles(report.points, &VerifyPoint::albedo).max;
+  report.reciprocity_max = quantiles(report.points, &VerifyPoint::reciprocity).max;
+  return report;
+}
+
+}  // namespace
+
+VerifyReport verify(const Table& table, const VerifySettings& settings) {
+  return verify(table, nullptr, settings);
+}
+
+VerifyReport verify(const Table& outline, const DenseCells& cells, const VerifySettings& settings) {
+  return verify(outline, &cells, settings);
+}
+
+bool within_tolerance(const VerifyReport& report, const VerifySettings& settings) {
+  return report.error.median <= settings.tolerance_median && report.error.p99 <= settings.tolerance_p99;
+}
+
+std::vector<std::pair<std::string, double>> figures(const VerifyReport& report) {
+  return {{"error_median", report.error.median},
+          {"error_p95", report.error.p95},
+          {"error_p99", report.error.p99},
+          {"error_max", report.error.max},
+          {"rest_error_median", report.rest_error.median},
+          {"rest_error_p99", report.rest_error.p99},
+          {"noise_floor", report.noise_floor.median},
+          {"noise_floor_p99", report.noise_floor.p99},
+          {"dirac_error_p99", report.dirac_error_p99},
+          {"energy_max", report.energy_max},
+          {"reciprocity_max", report.reciprocity_max},
+          {"points", static_cast<double>(report.points.size())}};
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,74 @@
+// A table against the live model at random held-out parameters: how far off it is, how much of that is noise.
+//
+// Point k draws its own parameters (uniform over each axis' physical range) and wi (uniform in cosine, theta
+// <= 89 degrees; for an anisotropic table also in azimuth) from random stream k. Its error is
+//     Int |f_table - f_live| cos_o dwo / max(Int |f_live| cos_o dwo, 0.002),   f = first (non-Dirac) + rest,
+// mean over channels of the folded colour, by importance sampling with the table's own density. The live
+// values are noisy, which biases an L1 error upwards; noise_floor is the same figure with the table replaced
+// by a second, independent live run of equal cost. Each point spends as many walks as a pilot says a floor of
+// a third of the median tolerance takes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bake/live/estimator.h"
+#include "bake/recipe/recipe.h"
+#include "sunbeam/table.h"
+#include "sunbeam/table_io.h"
+
+namespace sunbeam {
+
+struct VerifySettings {
+  int points = 1000;
+  std::uint64_t seed = 2024;
+  int threads = 0;                    // 0: all
+  Estimator truth = Estimator::pfmc;  // exact has no noise, and its floor is 0
+  double tolerance_median = 0.01;
+  double tolerance_p99 = 0.05;
+  std::function<void(double fraction)> on_progress;
+};
+
+struct VerifyPoint {
+  Parameters parameters;
+  double cos_i = 0, phi_i = 0;  // of wi
+  double error = 0, rest_error = 0;
+  double noise_floor = 0;
+  double dirac_error = 0;  // |R_table - R|, largest channel
+  double albedo = 0;       // of the table, Dirac included, largest channel
+  double reciprocity = 0;  // max |f(i,o) - f(o,i)| / max(|f(i,o)|, |f(o,i)|, 0.002/pi)
+};
+
+// Order statistic of one value or more: the smallest that at least a share q of all values do not exceed.
+double quantile(std::vector<double> values, double q);
+
+struct Quantiles {
+  double median, p95, p99, max;
+};
+
+struct VerifyReport {
+  std::vector<VerifyPoint> points;
+  Quantiles error, rest_error, noise_floor;
+  double dirac_error_p99 = 0, energy_max = 0, reciprocity_max = 0;
+  std::string truth;  // the estimator the table was held against
+};
+
+// What a table of this recipe is held against unless told otherwise: walks, and where the pigment scatters
+// those of the recipe; the exact evaluator where the tolerance is finer than walks can show in useful time.
+Estimator default_truth(const Recipe& recipe);
+
+// Throws Error if the recipe in the table cannot be read, or naming the key if truth is exact and the
+// material has no exact evaluator.
+VerifyReport verify(const Table& table, const VerifySettings& settings);
+// Of a table that is not in memory (sunbeam/table_io.h): the same figures.
+VerifyReport verify(const Table& outline, const DenseCells& cells, const VerifySettings& settings);
+
+// True if median and p99 of the error are within the tolerances.
+bool within_tolerance(const VerifyReport& report, const VerifySettings& settings);
+
+// The figures by their JSON names: error_median, error_p95, ..., points.
+std::vector<std::pair<std::string, double>> figures(const VerifyReport& report);
+
+}  // namespace sunbeam

@@ -1,0 +1,44 @@
+// Cells of one parameter node of a dense table whose values are equal, because the surface is its own mirror
+// image, because light may be reversed, or because a direction along z has no azimuth.
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "bake/recipe/recipe.h"
+#include "sunbeam/core/vec.h"
+
+namespace sunbeam {
+
+// One number a cell: for each wi, those of every wo of the table. The rest or its standard error, 1/sr.
+using Rows = std::vector<std::vector<Rgb>>;
+
+class Orbits {
+ public:
+  // `azimuths` over phi_o as in Recipe; a film is isotropic or has azimuths / 4 + 1 of them over phi_i.
+  Orbits(bool is_isotropic, std::size_t cosines, std::size_t azimuths);
+
+  // Replaces the values of each orbit by their mean: less noise, and symmetries hold to the last bit.
+  void average(Rows& values) const;
+  // The standard errors of these means. Cells of a row share their walks, so their errors add up; those of
+  // different rows do not.
+  void average_errors(Rows& errors) const;
+
+ private:
+  using Cells = std::vector<std::pair<std::size_t, std::size_t>>;  // (row, place in it), by row
+
+  struct End {
+    std::size_t cosine, azimuth;  // nodes; azimuths of an anisotropic table in steps from the x axis
+  };
+
+  std::size_t number(const End& i, const End& o) const;
+  std::size_t key(End i, End o) const;
+  static void spread(const Rgb& mean, const Cells& cells, Rows& rows);
+
+  bool is_isotropic_;
+  std::size_t cosines_, azimuths_;
+  std::vector<Cells> orbits_;
+};
+
+}  // namespace sunbeam

@@ -1,0 +1,132 @@
+#include "bake/dense/film_arrays.h"
+
+#include "bake/live/film/film_interface.h"
+#include "bake/optics/wavelength_quadrature.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr double kPhaseStep = 0.5;  // rad of film phase between thickness nodes: cubic to 0.15 % of a fringe
+constexpr std::size_t kCosines = 65;
+constexpr double kSmallestCosine = 1e-8;  // the node at 0 holds the limit from above: 0 without interfaces
+// Nodes of F over the optical path, even in its cube root: linear to 1e-5 of a white base for |a| up to 4.
+constexpr std::size_t kPathNodes = 2048;
+constexpr double kLongestPath = 100;      // optical depths; F is constant beyond
+constexpr std::size_t kNormalNodes = 48;  // quadrature over visible normals, each way
+constexpr int kQuadrantAzimuths = 4;      // midpoints, of an anisotropic film
+
+Axis film_thickness_axis(const Recipe& recipe) {
+  Axis axis = recipe.grid[0];
+  axis.is_cubic = true;
+  const double span = axis.high() - axis.low();
+  const auto nm = recipe.spectrum.wavelengths(recipe.material).nm;
+  const double phase = 4 * kPi * recipe.material.film_ior * span / *std::min_element(nm.begin(), nm.end());
+  if (axis.size() > 1)
+    axis.nodes =
+        spaced_nodes(axis.low(), axis.high(), static_cast<std::size_t>(std::ceil(phase / kPhaseStep)) + 2);
+  return axis;
+}
+
+Axis film_ior_axis(const Recipe& recipe) {
+  Axis axis = recipe.grid[1];
+  axis.is_cubic = true;
+  return axis;
+}
+
+// Directions at this cosine: one for an isotropic film, else some of a quadrant; the other three are its
+// mirror images.
+std::vector<Vec3> directions_at(double cosine, const Roughness& roughness) {
+  if (roughness.is_isotropic()) return {direction_from_cosine(cosine, 0)};
+  std::vector<Vec3> directions;
+  for (int a = 0; a < kQuadrantAzimuths; ++a)
+    directions.push_back(direction_from_cosine(cosine, kPi / 2 * (a + 0.5) / kQuadrantAzimuths));
+  return directions;
+}
+
+// How much of the light at cosine i, a mean over its azimuth, meets facets of cosine j and gets through, film
+// aside: the mean transmittance of a rough film is this row times the film's transmittance at the cosines.
+std::vector<double> crossing_weights(const Material& material, const Axis& cosines) {
+  Material clear = material;  // a film without interfaces, bending like the real one, passes everything
+  clear.film_thickness_nm = 0;
+  const FilmInterface film(clear, Rgb(550));  // the same at every wavelength
+  const Ggx ggx(material.roughness);
+  const std::size_t n = cosines.size();
+  std::vector<double> weights(n * n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto directions = directions_at(std::max(cosines.nodes[i], kSmallestCosine), material.roughness);
+    for (const Vec3& w : directions)
+      for (std::size_t k = 0; k < kNormalNodes * kNormalNodes; ++k) {
+        const double u = (static_cast<double>(k % kNormalNodes) + 0.5) / kNormalNodes;
+        const double v = (static_cast<double>(k / kNormalNodes) + 0.5) / kNormalNodes;
+        const Vec3 h = ggx.sample_visible(w, {u, v});
+        const auto crossing = film.cross(w, {h, {Rgb(0), Rgb(1)}, 0});
+        if (!crossing) continue;
+        const Stencil at = cosines.stencil(dot(w, h));
+        const double share =
+            crossing->weight.r / static_cast<double>(kNormalNodes * kNormalNodes * directions.size());
+        for (std::size_t j = 0; j < at.count; ++j) weights[i * n + at.node[j]] += share * at.weight[j];
+      }
+  }
+  return weights;
+}
+
+Rgb weighted_transmittance(const NdArray& reflectance, std::size_t first_cell,
+                           std::span<const double> weights) {
+  Rgb sum;
+  for (std::size_t j = 0; j < weights.size(); ++j)
+    sum += weights[j] * (Rgb(1) - reflectance.get(first_cell + j));
+  return sum;
+}
+
+NdArray first_visit(const Recipe& recipe) {
+  const Wavelengths w = recipe.spectrum.wavelengths(recipe.material);
+  const Axis path{"optical_path", "1", spaced_nodes(0, kLongestPath, kPathNodes, 3), 3};
+  NdArray result("first_visit", {path}, Precision::single_float);
+  for (std::size_t i = 0; i < kPathNodes; ++i) {
+    Rgb sum;
+    for (std::size_t k = 0; k < w.size(); ++k)
+      sum += w.weight[k] * (w.albedo[k] * std::exp(-w.absorption[k] * path.nodes[i]));
+    result.set(i, sum);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<Axis> film_axes(const Recipe& recipe) {
+  return {film_thickness_axis(recipe),
+          film_ior_axis(recipe),
+          {"cos_theta", "1", spaced_nodes(0, 1, kCosines), 1, 0, 0, true}};
+}
+
+void bake_film(const Recipe& recipe, Table& table) {
+  const auto axes = film_axes(recipe);
+  const Axis &thickness = axes[0], &ior = axes[1], &cosine = axes[2];
+  const bool has_frame = table.frame == FrameKind::closed, passes = has_frame && !recipe.material.is_smooth();
+  if (recipe.spectrum.is_full() && has_frame) table.first_visit = first_visit(recipe);
+  table.film_reflectance = NdArray("film_reflectance", axes, Precision::single_float);
+  if (passes) table.film_transmittance = NdArray("film_transmittance", axes, Precision::single_float);
+
+  const Wavelengths wavelengths = recipe.spectrum.wavelengths(recipe.material);
+  const WavelengthQuadrature spectrum{wavelengths.nm, wavelengths.weight};
+  for (std::size_t b = 0; b < ior.size(); ++b) {
+    Material material = recipe.material;
+    material.base_ior = ior.nodes[b];
+    const auto weights = passes ? crossing_weights(material, cosine) : std::vector<double>();
+    for (std::size_t a = 0; a < thickness.size(); ++a) {
+      material.film_thickness_nm = thickness.nodes[a];
+      const ThinFilm film = ThinFilm::of(material);
+      const std::size_t row = a * table.film_reflectance.stride(0) + b * table.film_reflectance.stride(1);
+      for (std::size_t c = 0; c < kCosines; ++c)
+        table.film_reflectance.set(
+            row + c, spectrum.fold_film(film, std::max(cosine.nodes[c], kSmallestCosine)).reflectance);
+      if (!passes) continue;
+      for (std::size_t c = 0; c < kCosines; ++c)
+        table.film_transmittance.set(
+            row + c,
+            weighted_transmittance(table.film_reflectance, row, {weights.data() + c * kCosines, kCosines}));
+    }
+  }
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,49 @@
+// The parameter nodes of a dense table, and what the rest at one of them becomes in the table's arrays.
+#pragma once
+
+#include <optional>
+
+#include "bake/blocks/job.h"
+#include "bake/dense/equal_cells.h"
+#include "bake/recipe/recipe.h"
+#include "sunbeam/table.h"
+
+namespace sunbeam {
+
+// Axes of a dense table's remainder.
+std::vector<Axis> rest_axes(const Recipe& recipe);
+
+class DenseNodes {
+ public:
+  explicit DenseNodes(const Recipe& recipe);
+
+  std::size_t size() const { return size_; }
+  Parameters parameters(std::size_t node) const;
+  Material material(std::size_t node) const { return parameters(node).applied_to(recipe_.material); }
+
+  // Directions of a row and of its places; cosines of both, azimuths of wo.
+  const std::vector<Vec3>& wi() const { return wi_; }
+  const std::vector<Vec3>& wo() const { return wo_; }
+  const std::vector<double>& cosines() const { return outline_.remainder.axes()[3].nodes; }
+  const std::vector<double>& azimuths() const { return outline_.remainder.axes()[6].nodes; }
+  std::size_t cells() const { return wi_.size() * wo_.size(); }
+
+  // Everything but `info` and the values of remainder and rest_stderr.
+  const Table& outline() const { return outline_; }
+
+  // What the arrays hold of a node, from its rest and from the rest's standard error.
+  std::vector<float> remainder(std::size_t node, Rows rest) const;
+  std::vector<float> rest_stderr(Rows errors) const;
+
+ private:
+  void frame(std::size_t node, Rows& rest) const;
+
+  const Recipe& recipe_;
+  Table outline_;
+  std::vector<Vec3> wi_, wo_;
+  std::size_t size_;
+  Orbits orbits_;
+  std::optional<RestFrame> frame_;
+};
+
+}  // namespace sunbeam

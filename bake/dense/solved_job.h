@@ -1,0 +1,15 @@
+// The dense encoding of a scattering pigment by adding and doubling (live/adding_doubling/slab_films.h). A
+// task is one film thickness at one base IOR, with all absorptions; the tasks of a base IOR share what is
+// solved.
+#pragma once
+
+#include "bake/blocks/job.h"
+
+namespace sunbeam {
+
+bool has_solution(const Recipe& recipe);
+
+// `recipe` must outlive the job.
+std::unique_ptr<BakeJob> solved_job(const Recipe& recipe, std::uint64_t seed);
+
+}  // namespace sunbeam

@@ -1,0 +1,126 @@
+#include "bake/factored/axes.h"
+
+#include <fmt/format.h>
+
+#include "sunbeam/core/error.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr double kNodesPerFringe = 10;              // of arrival and returned: cubic to 4e-4 of a fringe
+constexpr double kExchangeNodesPerFringe = 3;       // most of exchange has no fringes
+constexpr double kMoreNodesPerFringeOverWhite = 8;  // 3 alone would be off by 1 % of the albedo there
+constexpr std::size_t kLeastFringeNodes = 6;
+constexpr std::size_t kAlbedoNodes = 3;           // where wavelengths differ; the series in kd converges fast
+constexpr std::size_t kDepthNodesOfOneValue = 5;  // where only wavelengths make depths differ
+constexpr double kLowestCosine = 1e-3;
+constexpr double kMostCells = 1 << 28;
+
+Axis cubic(Axis axis) {
+  axis.is_cubic = axis.size() > 2;
+  return axis;
+}
+
+Axis orders_axis(const Recipe& recipe, const Wavelengths& w, double least_cosine, double per_fringe) {
+  const auto [shortest, longest] = std::minmax_element(w.nm.begin(), w.nm.end());
+  const double low = fringe_order(recipe.material, least_cosine) * recipe.grid[0].low() / *longest;
+  const double high = fringe_order(recipe.material, 1) * recipe.grid[0].high() / *shortest;
+  Axis axis{"fringe_order", "1", {low}};
+  if (high > low) {
+    const auto count =
+        std::max(kLeastFringeNodes, static_cast<std::size_t>(std::ceil((high - low) * per_fringe)) + 1);
+    const double step = (high - low) / static_cast<double>(count - 1);
+    axis.nodes = spaced_nodes(low, high + step, count + 1);  // one beyond: a cubic is best inside its nodes
+  }
+  return cubic(axis);
+}
+
+// Later visits carry the fringes, and their series ends the later the brighter the base.
+double exchange_nodes_per_fringe(const Wavelengths& w) {
+  return kExchangeNodesPerFringe +
+         kMoreNodesPerFringeOverWhite * square(*std::max_element(w.albedo.begin(), w.albedo.end()));
+}
+
+Axis depths_axis(const Recipe& recipe, const Wavelengths& w) {
+  const Axis& absorption = recipe.grid[2];
+  const auto [least, most] = std::minmax_element(w.absorption.begin(), w.absorption.end());
+  const double thickness = recipe.material.pigment_thickness_nm;
+  const double low = absorption.low() * thickness * *least, high = absorption.high() * thickness * *most;
+  Axis axis{"optical_depth", "1", {low}, 3};
+  const std::size_t count = absorption.size() > 1 ? absorption.size() : kDepthNodesOfOneValue;
+  if (high > low) axis.nodes = spaced_nodes(low, high, count, axis.power);
+  return cubic(axis);
+}
+
+Axis albedos_axis(const Wavelengths& w) {
+  const auto [least, most] = std::minmax_element(w.albedo.begin(), w.albedo.end());
+  Axis axis{"albedo", "1", {*least}};
+  constexpr double kSameAlbedo = 1e-6;  // as good as grey
+  if (*most - *least > kSameAlbedo) axis.nodes = spaced_nodes(*least, *most, kAlbedoNodes);
+  return cubic(axis);
+}
+
+NdArray outlined_array(const Recipe& recipe, const char* name, const std::vector<Axis>& axes,
+                       Precision precision) {
+  double cells = 1;
+  for (const Axis& axis : axes) cells *= static_cast<double>(axis.size());
+  if (cells > kMostCells)
+    throw Error(fmt::format("{}: [grid] and [table] ask for {:.3g} cells of '{}'; allowed: up to {:.3g}",
+                            recipe.name, cells, name, kMostCells));
+  return NdArray::outline(name, axes, precision, 1);
+}
+
+std::vector<Axis> joined(std::vector<Axis> axes, const std::vector<Axis>& more) {
+  axes.insert(axes.end(), more.begin(), more.end());
+  return axes;
+}
+
+NdArray arrival_outline(const Recipe& recipe, const Wavelengths& w) {
+  const Axis one_depth{"optical_depth", "1", {0}, 3};
+  const bool straight = recipe.material.transmission == Transmission::straight;
+  const std::vector<Axis> axes{cubic(recipe.grid[1]), straight ? one_depth : depths_axis(recipe, w),
+                               orders_axis(recipe, w, 0, kNodesPerFringe)};
+  return outlined_array(recipe, "arrival", joined(axes, direction_axes(recipe, "")), recipe.table.precision);
+}
+
+NdArray returned_outline(const Recipe& recipe, const Wavelengths& w) {
+  return outlined_array(
+      recipe, "returned",
+      {cubic(recipe.grid[1]), depths_axis(recipe, w), orders_axis(recipe, w, 1, kNodesPerFringe)},
+      Precision::single_float);
+}
+
+NdArray exchange_outline(const Recipe& recipe, const Wavelengths& w) {
+  const std::vector<Axis> axes{cubic(recipe.grid[1]), depths_axis(recipe, w), albedos_axis(w),
+                               orders_axis(recipe, w, 1, exchange_nodes_per_fringe(w))};
+  const auto with_wi = joined(axes, direction_axes(recipe, "_i"));
+  return outlined_array(recipe, "exchange", joined(with_wi, direction_axes(recipe, "_o")),
+                        recipe.table.precision);
+}
+
+}  // namespace
+
+bool has_factors(const Material& material) { return !material.scatters() && !material.has_multiple_facets(); }
+
+std::vector<Axis> direction_axes(const Recipe& recipe, const std::string& suffix) {
+  const auto cosines = spaced_nodes(kLowestCosine, 1, static_cast<std::size_t>(recipe.table.angles), 2);
+  Axis phi{"phi" + suffix, "rad", {0}};
+  if (!recipe.material.roughness.is_isotropic())
+    phi.nodes = spaced_nodes(0, kPi / 2, static_cast<std::size_t>(recipe.table.azimuths) / 4 + 1);
+  return {cubic({"cos_theta" + suffix, "1", cosines, 2}), cubic(phi)};
+}
+
+Factors factor_axes(const Recipe& recipe) {
+  Factors factors;
+  factors.grid = recipe.grid;
+  factors.wavelengths = recipe.spectrum.wavelengths(recipe.material);
+  const Wavelengths& w = factors.wavelengths;
+  if (!recipe.material.is_smooth()) factors.arrival = arrival_outline(recipe, w);
+  if (recipe.material.absorption_path == AbsorptionPath::sum)
+    factors.returned = returned_outline(recipe, w);
+  else
+    factors.exchange = exchange_outline(recipe, w);
+  return factors;
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,44 @@
+// `exchange` of the factored encoding (sunbeam/detail/factors.h) by walks: legs are collected at the nodes of
+// exchange_solver.h, each between its two neighbours, and all their chains are summed at once.
+#pragma once
+
+#include "bake/blocks/job.h"
+#include "bake/factored/exchange_solver.h"
+#include "bake/factored/factored_bake.h"
+
+namespace sunbeam {
+
+// `bake` must outlive it.
+class ExchangeWalks {
+ public:
+  explicit ExchangeWalks(const FactoredBake& bake);
+
+  // Parts of the fringe orders.
+  std::size_t parts() const;
+  struct Orders {
+    std::size_t first, end;
+    std::size_t size() const { return end - first; }
+  };
+  Orders orders_of(std::size_t part) const;
+
+  // At (depth, albedo, order, wi, wo), of one part.
+  Block run(std::size_t ior, std::size_t part) const;
+
+  // Puts the values of such a block into `array`.
+  void add(std::size_t ior, std::size_t part, const std::string& bytes, NdArray& array) const;
+
+ private:
+  std::vector<double> collected_returns(const Material& material, const Axis& orders,
+                                        BlockSummary& summary) const;
+  std::vector<std::vector<double>> collected_arrivals(const Material& material, const Axis& orders,
+                                                      std::uint64_t& count) const;
+  std::vector<ExchangeSolver::Arrived> arrived(const Material& material, const ExchangeSolver& solver,
+                                               const std::vector<std::vector<double>>& arrivals,
+                                               std::size_t order, std::size_t orders) const;
+  const std::vector<Axis>& axes() const { return bake_.outline.exchange.axes(); }
+
+  const FactoredBake& bake_;
+  std::vector<ExchangeSolver> solvers_;  // one an optical depth
+};
+
+}  // namespace sunbeam

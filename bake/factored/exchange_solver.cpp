@@ -1,0 +1,69 @@
+#include "bake/factored/exchange_solver.h"
+
+#include "sunbeam/detail/factors.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr double kLeastArriving = 1e-30;
+
+}  // namespace
+
+const Axis& ExchangeSolver::cosines() {
+  static const Axis axis{"", "", spaced_nodes(1e-3, 1, kNodes, 1.5), 1.5};
+  return axis;
+}
+
+ExchangeSolver::ExchangeSolver(double optical_depth) : optical_depth_(optical_depth), f_(kNodes) {
+  const std::vector<double>& m = cosines().nodes;
+  for (int a = 0; a < kNodes; ++a)
+    for (int b = 0; b < kNodes; ++b) f_.row(a)[b] = std::exp(-optical_depth / (m[a] * m[b]));
+}
+
+ExchangeSolver::Arrived ExchangeSolver::straight_on(double m) const {
+  Arrived end{{}, Vector(kNodes), m};
+  for (int b = 0; b < kNodes; ++b) end.f[b] = std::exp(-optical_depth_ / m * (1 / cosines().nodes[b] - 1));
+  return end;
+}
+
+ExchangeSolver::Arrived ExchangeSolver::bent(Vector p, double m) const {
+  double arriving = 0;
+  for (int a = 0; a < kNodes; ++a) arriving += p[a] * std::exp(-optical_depth_ / cosines().nodes[a]);
+  for (double& share : p) share /= std::max(arriving, kLeastArriving);
+  Vector f = multiply(p, f_);
+  return {std::move(p), std::move(f), m};
+}
+
+// kd f_i^T B y_o.
+Matrix ExchangeSolver::later_visits(std::span<const Arrived> ends, const Matrix& b, double albedo) const {
+  const int count = static_cast<int>(ends.size());
+  Matrix system = multiply(f_, b), right(kNodes, count), result(count);
+  for (int a = 0; a < kNodes; ++a) {
+    for (int c = 0; c < kNodes; ++c) system.row(a)[c] = (a == c ? 1 : 0) - albedo * system.row(a)[c];
+    for (int o = 0; o < count; ++o) right.row(a)[o] = ends[o].f[a];
+  }
+  const Matrix y = solve(system, right);
+  for (int i = 0; i < count; ++i) {
+    Vector sent = multiply(ends[i].f, b);
+    for (double& x : sent) x *= albedo;
+    const Vector row = multiply(sent, y);
+    std::copy(row.begin(), row.end(), result.row(i));
+  }
+  return result;
+}
+
+void ExchangeSolver::exchange(std::span<const Arrived> ends, const Matrix& b, double albedo,
+                              float* values) const {
+  Matrix sum = later_visits(ends, b, albedo);
+  const int count = sum.size();
+  for (int i = 0; i < count; ++i) {
+    const Arrived& from = ends[i];
+    for (int o = 0; o < count && !from.p.empty(); ++o)
+      sum.row(i)[o] = sum.row(i)[o] + dot(from.f, ends[o].p) -
+                      one_visit_of_product(optical_depth_, from.below, ends[o].below);
+  }
+  symmetrise(sum);
+  for (int k = 0; k < count * count; ++k) values[k] = static_cast<float>(sum.row(0)[k]);
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,56 @@
+// All visits of the base at once, with absorption path "product": `exchange` of sunbeam/detail/factors.h.
+//
+// A walk is a chain of legs, joined by the base's exp(-tau / (m m')) between light that arrives along the
+// cosine m and leaves along m'. With cosines at nodes m_a, and
+//
+//   F_ab = exp(-tau / (m_a m_b)),
+//   B_ab = the share of what leaves the base that leaves it at m_a and that the film sends back at m_b,
+//   p_a  = the share of the light along w that arrives at m_a, over A(w) = sum_a p_a exp(-tau / m_a),
+//
+// the visits of all walks from wi to wo add up to
+//
+//   rest = s kd/pi A_i A_o p_i^T (F + kd F B F + (kd F B)^2 F + ...) p_o
+//        = s kd/pi A_i A_o [ p_i^T f_o + kd f_i^T B y_o ],     f = F p,   (1 - kd F B) y_o = f_o.
+//
+// The first term is one visit, E = exp(tau (1/m_i + 1/m_o - 1/(m_i m_o))) unless facets bend light, so
+// exchange = p_i^T f_o - E + kd f_i^T B y_o; the mean of both directions of light, which are equal but for
+// noise.
+#pragma once
+
+#include <span>
+
+#include "bake/live/exact/dense.h"
+#include "sunbeam/detail/axis.h"
+
+namespace sunbeam {
+
+// At one optical depth tau.
+class ExchangeSolver {
+ public:
+  static constexpr int kNodes = 64;
+
+  explicit ExchangeSolver(double optical_depth);
+
+  static const Axis& cosines();  // m_a
+
+  // Light along one direction as it arrives.
+  struct Arrived {
+    Vector p;  // empty where light passes straight on: all at one cosine, and one visit is E
+    Vector f;
+    double below;  // m of E
+  };
+  Arrived straight_on(double m) const;
+  // `p` not yet divided by A(w).
+  Arrived bent(Vector p, double m) const;
+
+  // Of all pairs, row by row.
+  void exchange(std::span<const Arrived> ends, const Matrix& b, double albedo, float* values) const;
+
+ private:
+  Matrix later_visits(std::span<const Arrived> ends, const Matrix& b, double albedo) const;
+
+  double optical_depth_;
+  Matrix f_;
+};
+
+}  // namespace sunbeam

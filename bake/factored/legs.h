@@ -1,0 +1,96 @@
+// Legs of walks between a film and its base: from outside through the film to the base, or from the base to
+// the film and back.
+//
+// A leg chooses its direction by facets alone, which know neither thickness nor wavelength, pigment nor
+// albedo. So the same legs serve every fringe order, optical depth and albedo, and what the film lets through
+// or reflects at all orders is weighted in afterwards (FringePowers). Legs are stratified in the square of
+// visible normals.
+#pragma once
+
+#include "bake/live/film/film_interface.h"
+#include "bake/optics/fringes.h"
+#include "sunbeam/detail/axis.h"
+
+namespace sunbeam {
+
+// Where light is and how much of it, film and pigment aside.
+struct Leg {
+  double facet_cosine;  // with the film's facet, on the side it is met from
+  double from, to;      // cosines: base side; `from` only of a return
+  double weight;
+};
+
+// `material` must outlive the legs.
+class FilmLegs {
+ public:
+  explicit FilmLegs(const Material& material)
+      : material_(material), film_(material, Rgb(550)), ggx_(material.roughness) {}
+
+  // From outside along w to the base; the weights of a replicate add up to the share of w that facets let by.
+  // strata^2 legs, one of a smooth film.
+  template <class Visit>
+  void visit_arrivals(const Vec3& w, std::size_t strata, Rng rng, Visit visit) const {
+    if (material_.is_smooth()) strata = 1;
+    const double share = 1 / static_cast<double>(strata * strata);
+    for (std::size_t k = 0; k < strata * strata; ++k) {
+      const Vec3 h = normal(w, stratum(k, strata, rng));
+      const auto crossing = film_.cross(w, {h, {Rgb(0), Rgb(1)}, 0});
+      if (crossing) visit(Leg{std::min(dot(w, h), 1.0), 0, crossing->inside.z, share * crossing->weight.r});
+    }
+  }
+
+  // From the base, along its cosine law, to the film and back. `up` strata over the base's cosine^2, with a
+  // quarter of it of facets each way.
+  template <class Visit>
+  void visit_returns(std::size_t up, Rng rng, Visit visit) const {
+    constexpr std::size_t kFacetsOfUp = 4;
+    const std::size_t strata = material_.is_smooth() ? 1 : up / kFacetsOfUp;
+    const double share = 1 / static_cast<double>(up * strata * strata);
+    for (std::size_t i = 0; i < up; ++i)
+      for (std::size_t k = 0; k < strata * strata; ++k) {
+        const double cosine =
+            std::sqrt((static_cast<double>(i) + 1 - rng.uniform()) / static_cast<double>(up));
+        const Vec3 m = direction_from_cosine(cosine, 2 * kPi * rng.uniform());
+        const Vec3 h = normal(m, stratum(k, strata, rng));
+        const auto mirrored = film_.reflect_down(m, {h, {Rgb(1), Rgb(0)}, 1});
+        if (mirrored)
+          visit(Leg{std::min(dot(m, h), 1.0), m.z, mirrored->direction.z, share * mirrored->weight.r});
+      }
+  }
+
+ private:
+  static Point2 stratum(std::size_t k, std::size_t strata, Rng& rng) {
+    const auto n = static_cast<double>(strata);
+    const double u = rng.uniform(), v = rng.uniform();
+    return {(static_cast<double>(k % strata) + u) / n, (static_cast<double>(k / strata) + v) / n};
+  }
+  Vec3 normal(const Vec3& w, const Point2& u) const {
+    return material_.is_smooth() ? Vec3{0, 0, 1} : ggx_.sample_visible(w, u);
+  }
+
+  const Material& material_;
+  FilmInterface film_;
+  Ggx ggx_;
+};
+
+// Powers of one film at all nodes of a fringe axis, for one facet cosine after the other.
+class FringePowers {
+ public:
+  // `order` is the fringe order of a film of one wavelength's thickness.
+  FringePowers(const ThinFilm& film, const Axis& orders, double order)
+      : reflectance(orders.size()),
+        transmittance(orders.size()),
+        film_(film),
+        first_(orders.low() / order),
+        step_(orders.size() > 1 ? (orders.nodes[1] - orders.nodes[0]) / order : 0) {}
+
+  void at(double cosine) { film_fringes(film_, cosine, first_, step_, reflectance, transmittance); }
+
+  std::vector<double> reflectance, transmittance;
+
+ private:
+  ThinFilm film_;
+  double first_, step_;
+};
+
+}  // namespace sunbeam

@@ -1,0 +1,38 @@
+// Light that leaves the base and is sent back to it by the film: `returned` of the factored encoding
+// (sunbeam/detail/factors.h), and the legs that exchange.h makes chains of.
+#pragma once
+
+#include "bake/blocks/job.h"
+#include "bake/factored/factored_bake.h"
+#include "bake/factored/legs.h"
+
+namespace sunbeam {
+
+// How many strata over the base's cosine the recipe's accuracy.noise asks for; the walks that this took and
+// the noise go to `summary`.
+std::size_t strata_of_returns(const FactoredBake& bake, const Material& material, const FilmLegs& legs,
+                              BlockSummary& summary);
+
+// Calls visit(leg, what the film reflects at each of `orders`) for the returns of all replicates.
+template <class Visit>
+void visit_returns(const FactoredBake& bake, const Material& material, const Axis& orders,
+                   BlockSummary& summary, Visit visit) {
+  const FilmLegs legs(material);
+  FringePowers powers(ThinFilm::below(material), orders, fringe_order(material, 1));
+  const std::size_t up = strata_of_returns(bake, material, legs, summary);
+  for (std::size_t r = 0; r < kReplicates; ++r)
+    legs.visit_returns(up, bake.rng_of_returns(r), [&](Leg leg) {
+      powers.at(leg.facet_cosine);
+      leg.weight /= kReplicates;
+      visit(leg, powers.reflectance);
+      ++summary.walks;
+    });
+}
+
+// At (depth, order).
+Block walk_returned(const FactoredBake& bake, std::size_t ior);
+
+// Puts the values of such a block into `array`.
+void add_returned(std::size_t ior, const std::string& bytes, NdArray& array);
+
+}  // namespace sunbeam

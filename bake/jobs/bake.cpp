@@ -1,0 +1,122 @@
+#include "bake/jobs/bake.h"
+
+#include <fmt/format.h>
+
+#include "bake/base/version.h"
+#include "bake/blocks/run.h"
+#include "bake/dense/film_arrays.h"
+#include "bake/dense/nodes.h"
+#include "bake/dense/solved_job.h"
+#include "bake/dense/walked_job.h"
+#include "bake/factored/axes.h"
+#include "bake/factored/job.h"
+#include "sunbeam/core/error.h"
+
+namespace sunbeam {
+namespace {
+
+double cells_of(const std::vector<Axis>& axes) {
+  double cells = 1;
+  for (const Axis& axis : axes) cells *= static_cast<double>(axis.size());
+  return cells;
+}
+
+double bytes_of(const NdArray& array) {
+  return static_cast<double>(array.cells() * array.channels() *
+                             (array.precision() == Precision::half_float ? 2 : 4));
+}
+
+}  // namespace
+
+double bytes_of(const Recipe& recipe, Encoding encoding) {
+  if (encoding == Encoding::factored) {
+    const Factors factors = factor_axes(recipe);
+    return bytes_of(factors.arrival) + bytes_of(factors.returned) + bytes_of(factors.exchange);
+  }
+  const double value = recipe.table.precision == Precision::half_float ? 2 : 4;
+  const double films = recipe.material.is_smooth() || recipe.table.frame == FrameKind::none ? 1 : 2;
+  return (3 * value + 4) * cells_of(rest_axes(recipe)) + films * 3 * 4 * cells_of(film_axes(recipe));
+}
+
+double cpu_seconds_of(const Recipe& recipe, Encoding encoding, std::uint64_t seed) {
+  const auto job = make_job(recipe, encoding, seed);
+  double seconds = 0;
+  for (std::size_t task = 0; task < job->tasks(); ++task) seconds += job->cost(task);
+  return seconds;
+}
+
+std::uint64_t total_walks(const BakeJob& job, const Blocks& blocks) {
+  std::uint64_t walks = 0;
+  for (std::size_t task = 0; task < job.tasks(); ++task) walks += blocks.summary(task).walks;
+  return walks;
+}
+
+std::map<std::string, std::string> info_of(const Recipe& recipe, Encoding encoding, std::uint64_t seed,
+                                           std::uint64_t walks, const char* estimator) {
+  std::map<std::string, std::string> info{{"recipe", recipe.text},        {"recipe_hash", recipe.hash},
+                                          {"seed", std::to_string(seed)}, {"samples", std::to_string(walks)},
+                                          {"estimator", estimator},       {"tool_version", kToolVersion},
+                                          {"encoding", name_of(encoding)}};
+  info.merge(recipe.spectrum.attributes());
+  return info;
+}
+
+std::vector<Encoding> encodings_of(const Recipe& recipe) {
+  if (recipe.table.encoding != Encoding::automatic) return {recipe.table.encoding};
+  if (!has_factors(recipe.material)) return {Encoding::dense};
+  if (bytes_of(recipe, Encoding::factored) < bytes_of(recipe, Encoding::dense))
+    return {Encoding::factored, Encoding::dense};
+  return {Encoding::dense, Encoding::factored};
+}
+
+void require_reasonable_size(const Recipe& recipe, Encoding encoding) {
+  if (encoding == Encoding::factored) {
+    factor_axes(recipe);
+    return;
+  }
+  constexpr double kMostCells = 1u << 31;  // three halves each: 13 GB
+  const double rest = cells_of(rest_axes(recipe)), film = cells_of(film_axes(recipe));
+  if (rest > kMostCells)
+    throw Error(
+        fmt::format("{}: [grid] and table.angles, table.azimuths ask for {:.3g} cells; allowed: up to {:.3g}",
+                    recipe.name, rest, kMostCells));
+  if (film > kMostCells)
+    throw Error(fmt::format(
+        "{}: grid.film_thickness_nm and grid.base_ior ask for {:.3g} film cells; allowed: up to {:.3g}",
+        recipe.name, film, kMostCells));
+}
+
+std::unique_ptr<BakeJob> make_job(const Recipe& recipe, Encoding encoding, std::uint64_t seed) {
+  if (encoding == Encoding::factored) return factored_job(recipe, seed);
+  return has_solution(recipe) ? solved_job(recipe, seed) : walked_job(recipe, seed);
+}
+
+Table whole_table(const Table& outline, const DenseCells& cells) {
+  Table table = outline;
+  const auto fill = [](NdArray& array, const std::vector<float>& values) {
+    array = NdArray(array.name(), array.axes(), array.precision(), array.channels());
+    std::copy(values.begin(), values.end(), array.values().begin());
+  };
+  const std::size_t nodes = outline.remainder.cells() / outline.remainder.stride(2);
+  fill(table.remainder, cells.remainder(0, nodes));
+  fill(table.rest_stderr, cells.rest_stderr(0, nodes));
+  return table;
+}
+
+Table bake_table(const Recipe& recipe, Encoding encoding, const SweepSettings& settings) {
+  const auto job = make_job(recipe, encoding, settings.seed);
+  BlocksInMemory blocks(job->tasks());
+  TaskSettings run{settings.threads, {}, {}};
+  if (settings.on_progress)
+    run.on_progress = [&](const BakeProgress& p) { settings.on_progress(p.fraction); };
+  run_tasks(*job, {0, job->tasks()}, blocks, run);
+  const Table table = job->table(blocks);
+  const auto cells = job->cells(blocks);
+  return cells ? whole_table(table, *cells) : table;
+}
+
+Table bake_table(const Recipe& recipe, const SweepSettings& settings) {
+  return bake_table(recipe, encodings_of(recipe).front(), settings);
+}
+
+}  // namespace sunbeam

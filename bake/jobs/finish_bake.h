@@ -1,0 +1,30 @@
+// What follows the last block of a bake, wherever the blocks are: measure the table's error, write it.
+#pragma once
+
+#include <string>
+
+#include "bake/blocks/job.h"
+#include "bake/cli/progress.h"
+
+namespace sunbeam {
+
+inline constexpr int kCheckPoints = 250;  // of the error that a table carries
+
+class FinishedBake {
+ public:
+  // `blocks` must have all of the job's, and outlive this, as recipe and job must. `plan` as in Plan.
+  FinishedBake(const Recipe& recipe, const BakeJob& job, const Blocks& blocks, const std::string& plan);
+
+  // Stores the figures of `sunbeam verify TABLE --points POINTS` in the table. True if within the tolerances.
+  bool measure_error(int points, int threads, ProgressForm form);
+
+  // .exr: in memory for some nodes only.
+  void save(const std::string& path) const;
+
+ private:
+  const Recipe& recipe_;
+  Table table_;
+  std::unique_ptr<DenseCells> cells_;
+};
+
+}  // namespace sunbeam

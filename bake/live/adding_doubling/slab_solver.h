@@ -1,0 +1,181 @@
+// The rest of a film over a scattering pigment without walks: adding and doubling, one Fourier mode of the
+// azimuth at a time. For isotropic films whose facets are met once (solves()).
+//
+// Directions below the film are Gauss nodes of the cosine m, m_j of weight w_j, M = diag(2 pi w_j m_j). Per
+// wavelength and mode k, with Int g cos(k phi) dphi of what light carries and 1/(2 pi) Int g cos(k phi) dphi
+// of what it is carried by:
+//   E_w  light that enters along w, per node: moments of the film's passage at its facets,
+//   F    light that the film throws back down, from node to node, the same of its reflection,
+//   R, T of the pigment alone (functions: radiance that leaves, for power that arrives), by doubling a layer
+//        thin enough to scatter once.
+// What never reaches the base is, with D = (1 - F M R)^-1 E_wi the light on its way down,
+//   slab_k(wo, wi) = s E_wo . R D,      slab = sum_k (2 - delta_k0) slab_k cos(k phi),
+// and the base, which forgets directions, sees the mode 0 alone:
+//   base = s kd/pi A(wo) A(wi) / (1 - kd returned),  A(w) = 1 . M T D,
+// returned = the share of what leaves a Lambertian base that comes back to it. The facets' integrals E and F
+// interpolate what they act on between the nodes, so that no lobe is too narrow. Discretisation errors:
+// tests/accuracy/dense/slab_solver_test.cpp. Sources: van de Hulst, Multiple Light Scattering (1980), ch. 4;
+// Jakob et al., A comprehensive framework for rendering layered materials, SIGGRAPH 2014.
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "bake/live/exact/dense.h"
+#include "bake/live/general/slab.h"
+#include "bake/live/walks/kernels.h"
+#include "sunbeam/detail/angles.h"
+
+namespace sunbeam {
+
+// 2 n1 d / lambda of each wavelength.
+std::vector<double> fringe_orders(double film_ior, double thickness_nm, const Wavelengths& wavelengths);
+
+class SlabSolver {
+ public:
+  // How finely it works.
+  struct Resolution {
+    int below = 12, above = 20;  // cosines up to the critical one of the film seen from below, and from there
+    int across = 24, around = 24;  // facets of one direction: over the cap, and over half a turn
+    double least = 3e-5;           // share of the phase function that may be left out
+    // Modes of the azimuth in which light scattered once is weaker than this share of its mean, between any
+    // two of the cosines, are left out too.
+    double faintest = 0;
+  };
+
+  // Largest |mean cosine| of a scattering event.
+  static constexpr double kMostForward = 0.75;
+
+  static bool solves(const Material& material);
+
+  // For this material with any film thickness and any optical depth of `depths` (absorption, at any
+  // wavelength), between directions of these cosines (> 0, outside).
+  SlabSolver(const Material& material, std::vector<double> cosines, Resolution resolution);
+  SlabSolver(const Material& material, std::vector<double> cosines)
+      : SlabSolver(material, std::move(cosines), Resolution()) {}
+
+  // Prepares the pigment at an optical depth of absorption. May be called by many threads, but not beside
+  // rest().
+  void add_depth(double depth);
+
+  // What a film at one fringe order over a pigment of one depth sends back, 1/sr.
+  struct Response {
+    std::vector<Matrix>
+        slab;        // per mode: light that never reaches the base, between the cosines of wo and wi
+    Vector arrived;  // at the base, from each cosine; times the root of s / pi
+    double returned = 0;
+
+    // Over a base of this albedo: light that reaches it, whatever the azimuth.
+    double base(std::size_t a, std::size_t b, double albedo) const {
+      return albedo / (1 - albedo * returned) * arrived[a] * arrived[b];
+    }
+  };
+
+  // The film at some fringe orders 2 n1 d / lambda, at most kMostWavelengths.
+  class Fringes {
+   public:
+    Fringes(const SlabSolver& solver, std::span<const double> orders);
+
+    // Of the order of this number. The same bits whatever other orders there are. Throws Error if the depth
+    // has not been added.
+    Response response(std::size_t order, double depth) const;
+
+   private:
+    friend class SlabSolver;
+    struct Mode {
+      Matrix entry;        // E, by (cosine, to)
+      Matrix thrown_back;  // F, by (to, from)
+    };
+
+    const SlabSolver& solver_;
+    std::vector<std::vector<Mode>> modes_;  // by (order, mode)
+  };
+
+  // The film at one thickness and all wavelengths, for many depths.
+  class Film {
+   public:
+    Film(const SlabSolver& solver, double film_thickness_nm, const Wavelengths& wavelengths);
+
+    // Fourier modes of rest, 1/sr, between cosines a (of wo) and b (of wi): at() sums them. Absorption is
+    // that of the pigment at 510 nm, times its thickness. Throws Error if a depth has not been added.
+    class Modes {
+     public:
+      Rgb at(std::size_t a, std::size_t b, double azimuth) const;
+
+     private:
+      friend class Film;
+      std::size_t cosines_ = 0;
+      std::vector<std::vector<Rgb>> mode_;  // each over (a, b)
+    };
+    Modes rest(double optical_depth) const;
+
+   private:
+    Wavelengths wavelengths_;
+    Fringes fringes_;
+  };
+
+  // Share of light along the cosine of this number that films of these fringe orders, at most
+  // kMostWavelengths, let in.
+  std::vector<double> transmittances(std::span<const double> orders, std::size_t cosine) const;
+
+  int modes() const { return modes_; }
+
+ private:
+  // Nodes and weights of the cosine below the film, and what values between them are made of.
+  struct Nodes {
+    std::vector<double> cosine, sine, root;  // root of M
+    static constexpr int kStencil = 6;
+    struct Stencil {
+      int first;
+      std::array<double, kStencil> weight;
+    };
+    int size() const { return static_cast<int>(cosine.size()); }
+    Stencil at(double m) const;
+  };
+  // A facet that light of one direction meets, and where the light goes on below the film.
+  struct Facet {
+    double cosine;   // at which the light meets it
+    double share;    // of the light, shadowing included
+    double azimuth;  // cosine of the azimuth of where it goes on
+    int first_node;  // around the cosine of where it goes on
+    std::array<double, Nodes::kStencil> even,
+        odd;  // its part in moments at these nodes, of even and odd modes
+  };
+  using Facets = std::vector<Facet>;
+
+  // R and T between nodes, times the roots of M on both sides.
+  struct Layer {
+    std::vector<Matrix> reflection;  // per mode
+    Matrix transmission;             // mode 0
+  };
+  // The phase function's mode between nodes, 1/sr: scattered on, and back.
+  struct Phase {
+    Matrix forward, backward;
+  };
+
+  static Nodes make_nodes(const Material& material, const Resolution& resolution);
+  Facets facets_of_entry(const Vec3& w) const;
+  Facets facets_thrown_back(int from) const;
+  Facet facet(double cosine, double share, const Vec3& on) const;
+  int modes_above(double faintest) const;
+  std::vector<double> moments(const std::vector<Facets>& rows, const walk::FilmSide& film, bool lets_through,
+                              std::span<const double> orders) const;
+  Phase phase(int mode) const;
+  Layer make_layer(double depth) const;
+  void double_up(int mode, double depth, Matrix& r, Matrix& t) const;
+
+  Material material_;
+  walk::Layers interface_;  // for the film's interface alone
+  std::vector<double> cosines_;
+  Resolution resolution_;
+  Nodes nodes_;
+  int terms_;                                // of the phase function's Legendre series
+  int modes_;                                // of the azimuth
+  std::vector<Facets> entry_, thrown_back_;  // by cosine; by node
+  std::mutex mutex_;                         // of
+  std::map<double, Layer> layers_;
+};
+
+}  // namespace sunbeam

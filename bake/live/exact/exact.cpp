@@ -1,0 +1,200 @@
+#include "bake/live/exact/exact.h"
+
+namespace sunbeam {
+
+ExactTriple::ExactTriple(const Material& material, const Rgb& wavelengths_nm, const Rgb& albedo,
+                         const Rgb& absorption, const ExactResolution& resolution)
+    : material_(material),
+      base_albedo_(albedo),
+      absorption_(absorption),
+      film_(material, wavelengths_nm, resolution) {
+  const auto reflection = film_.reflection();
+  const auto exit = film_.exit(reflection);
+  if (material.absorption_path == AbsorptionPath::sum)
+    solve_sum(reflection, exit);
+  else
+    solve_product(reflection, exit);
+}
+
+// exp of the material's own exponent, scaled to each wavelength. Often all absorb alike.
+Rgb ExactTriple::attenuation(double exponent) const {
+  if (absorption_.r == absorption_.g && absorption_.g == absorption_.b)
+    return Rgb(std::exp(absorption_.r * exponent));
+  return transform(absorption_, [&](double relative) { return std::exp(relative * exponent); });
+}
+
+// f1 / kd.
+Rgb ExactTriple::attenuated(double cos_i, double cos_o) const {
+  return kInvPi * attenuation(material_.absorption_exponent(cos_i, cos_o));
+}
+
+void ExactTriple::solve_sum(const Matrices& reflection, const Vectors& exit) {
+  Vectors attenuation_at;
+  for (const double mu : film_.basis().nodes()) {
+    const Rgb value = attenuation(-material_.optical_depth() / mu);
+    for (int c = 0; c < 3; ++c) attenuation_at[c].push_back(value[c]);
+  }
+  for (int c = 0; c < 3; ++c) {
+    const double rho = kInvPi * dot(multiply(attenuation_at[c], reflection[c]), attenuation_at[c]);
+    gain_[c] = base_albedo_[c] * kInvPi / (1 - base_albedo_[c] * rho);
+    leaving_[c] = dot(exit[c], attenuation_at[c]);
+  }
+}
+
+void ExactTriple::solve_product(const Matrices& reflection, const Vectors& exit) {
+  const int n = film_.basis().size();
+  Matrices f{Matrix(n), Matrix(n), Matrix(n)};
+  for (int i = 0; i < n; ++i) {
+    const Vectors v = towards_nodes(film_.basis().nodes()[i]);
+    for (int c = 0; c < 3; ++c) add_scaled(base_albedo_[c], v[c].data(), n, f[c].row(i));
+  }
+  for (int c = 0; c < 3; ++c) {
+    Matrix system = multiply(reflection[c], f[c]);  // 1 - B F
+    for (int i = 0; i < n; ++i)
+      for (int k = 0; k < n; ++k) system.row(i)[k] = (i == k ? 1 : 0) - system.row(i)[k];
+    Matrix m = solve(std::move(system), reflection[c]);
+    symmetrise(m);
+    exit_[c] = multiply(multiply(exit[c], f[c]), m);
+    add_scaled(1, exit[c].data(), n, exit_[c].data());
+    visits_[c] = std::move(m);
+    if (film_.has_single_crossing()) continue;
+    exit_[c] = multiply(exit_[c], f[c]);
+    Matrix g = multiply(multiply(f[c], visits_[c]), f[c]);
+    for (int i = 0; i < n; ++i) add_scaled(1, f[c].row(i), n, g.row(i));
+    symmetrise(g);
+    visits_[c] = std::move(g);
+  }
+}
+
+// v / kd of light that arrives at `cosine`.
+ExactTriple::Vectors ExactTriple::towards_nodes(double cosine) const {
+  Vectors v;
+  for (Vector& channel : v) channel.reserve(film_.basis().size());
+  for (const double mu : film_.basis().nodes()) {
+    const Rgb value = attenuated(cosine, mu);
+    for (int c = 0; c < 3; ++c) v[c].push_back(value[c]);
+  }
+  return v;
+}
+
+// What the film lets through, all in all.
+Rgb ExactTriple::passing(const std::vector<Passage>& passages) const {
+  Rgb sum;
+  for (const Passage& passage : passages) sum += film_.transmittance(passage) * passage.share;
+  return sum;
+}
+
+Rgb ExactTriple::arriving(const std::vector<Passage>& passages) const {
+  const auto pigment = [&](double cosine) { return attenuation(-material_.optical_depth() / cosine); };
+  if (passages.empty()) return {};
+  if (film_.has_single_crossing()) return passing(passages) * pigment(passages.front().cosine);
+  Rgb sum;
+  for (const Passage& passage : passages)
+    sum += film_.transmittance(passage) * pigment(passage.cosine) * passage.share;
+  return sum;
+}
+
+// p_t(w -> m) as weights of the nodes: interpolates what it will be multiplied with.
+ExactTriple::Vectors ExactTriple::on_nodes(const std::vector<Passage>& passages) const {
+  const CosineBasis& basis = film_.basis();
+  Vectors sum;
+  sum.fill(Vector(basis.size()));
+  for (const Passage& passage : passages) {
+    const auto stencil = basis.at(passage.cosine);
+    const Rgb power = film_.transmittance(passage) * passage.share;
+    for (int c = 0; c < 3; ++c)
+      add_scaled(power[c], stencil.weight.data(), basis.per_panel(), sum[c].data() + stencil.first);
+  }
+  return sum;
+}
+
+ExactTriple::Side ExactTriple::side(const std::vector<Passage>& passages) const {
+  if (material_.absorption_path == AbsorptionPath::sum) return {arriving(passages), {}, 0};
+  if (!film_.has_single_crossing()) return {{}, on_nodes(passages), 0};
+  const double cosine = passages.empty() ? 1 : passages.front().cosine;
+  return {passing(passages), towards_nodes(cosine), cosine};
+}
+
+Rgb ExactTriple::rest(const Side& wo, const Side& wi) const {
+  if (material_.absorption_path == AbsorptionPath::sum) return gain() * (wo.power * wi.power);
+  Rgb visits;
+  for (int c = 0; c < 3; ++c) visits[c] = dot(multiply(wi.on_nodes[c], visits_[c]), wo.on_nodes[c]);
+  if (!film_.has_single_crossing())
+    return material_.radiance_scale() * transform(visits, [](double x) { return std::max(0.0, x); });
+  const Rgb first = attenuated(wo.cosine, wi.cosine);
+  return material_.radiance_scale() * base_albedo_ * (wo.power * wi.power) * (first + base_albedo_ * visits);
+}
+
+Rgb ExactTriple::rest_albedo(const std::vector<Passage>& passages) const {
+  if (material_.absorption_path == AbsorptionPath::sum) return gain_ * arriving(passages) * leaving_;
+  const Side in = side(passages);
+  Rgb sum;
+  for (int c = 0; c < 3; ++c) sum[c] = dot(in.on_nodes[c], exit_[c]);
+  return film_.has_single_crossing() ? base_albedo_ * in.power * sum : sum;
+}
+
+ExactRest::ExactRest(const Material& material, const Wavelengths& wavelengths,
+                     const ExactResolution& resolution)
+    : wavelengths_(wavelengths) {
+  for (std::size_t first = 0; first < wavelengths.size(); first += 3) {
+    const auto of = [&](const std::vector<double>& values) { return wavelengths.triple(values, first); };
+    triples_.emplace_back(material, of(wavelengths.nm), of(wavelengths.albedo), of(wavelengths.absorption),
+                          resolution);
+  }
+  const auto shortest = std::min_element(wavelengths.nm.begin(), wavelengths.nm.end());
+  finest_ = static_cast<std::size_t>(shortest - wavelengths.nm.begin()) / 3;
+}
+
+template <class F>
+std::vector<double> ExactRest::each(F of_triple) const {
+  std::vector<double> values;
+  for (const ExactTriple& triple : triples_) {
+    const Rgb value = of_triple(triple);
+    values.insert(values.end(), {value.r, value.g, value.b});
+  }
+  values.resize(wavelengths_.size());
+  return values;
+}
+
+template <class F>
+Rgb ExactRest::fold(F of_triple) const {
+  return wavelengths_.fold(each(of_triple));
+}
+
+std::vector<Rgb> ExactRest::rest(std::span<const Vec3> wo, const Vec3& wi) const {
+  std::vector<Rgb> values(wo.size());
+  if (wi.z <= 0) return values;
+  std::vector<ExactTriple::Side> sides;
+  const auto in = passages(wi);
+  for (const ExactTriple& triple : triples_) sides.push_back(triple.side(in));
+  for (std::size_t k = 0; k < wo.size(); ++k) {
+    if (wo[k].z <= 0) continue;
+    const auto out = passages(wo[k]);
+    auto side = sides.begin();
+    values[k] = fold([&](const ExactTriple& triple) { return triple.rest(triple.side(out), *side++); });
+  }
+  return values;
+}
+
+Rgb ExactRest::albedo(const Vec3& w) const {
+  if (w.z <= 0) return {};
+  const auto in = passages(w);
+  return fold([&](const ExactTriple& triple) { return triple.first_albedo(w) + triple.rest_albedo(in); });
+}
+
+Rgb ExactRest::rest_albedo(const Vec3& w) const {
+  if (w.z <= 0) return {};
+  const auto in = passages(w);
+  return fold([&](const ExactTriple& triple) { return triple.rest_albedo(in); });
+}
+
+std::vector<double> ExactRest::arriving(const Vec3& w) const {
+  const auto in = passages(w);
+  return each([&](const ExactTriple& triple) { return triple.arriving(in); });
+}
+
+std::vector<double> ExactRest::gain() const {
+  return each([](const ExactTriple& triple) { return triple.gain(); });
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,97 @@
+// The film as integrals over its facets, by quadrature: what FilmInterface draws at random, summed up.
+//
+// Over a base without azimuth light below the film is known by its polar cosine alone: an anisotropic film
+// acts on it by the mean over the azimuth of what comes from below, which is that over all turns of its
+// facets. A function of the cosine is known by its values at the nodes of a CosineBasis, so the film is a
+// matrix (reflection from below) and vectors (passages). Powers are per wavelength, three at once.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "bake/live/exact/cosine_basis.h"
+#include "bake/live/exact/dense.h"
+#include "bake/live/film/facet_turns.h"
+#include "bake/live/film/film_interface.h"
+
+namespace sunbeam {
+
+// Numbers of nodes. The defaults give the errors that exact.h states; tests double them.
+struct ExactResolution {
+  int per_panel = 10;  // of a panel of the cosine basis, at most 24
+  int normals = 24;    // facets: polar angle of the normal,
+  int cosines = 12;    //         a panel of the direction's cosine with it, at most 24,
+  int azimuths = 16;   //         the direction's azimuth about it
+  int visible = 28;    // normals visible from one direction: polar, and 3/4 of it a panel of azimuths
+};
+
+// A way through the film to the base, whatever the wavelength.
+struct Passage {
+  double facet_cosine;  // outside
+  double cosine;        // below, as the light arrives at the base
+  double share;         // of the power if the film lets all through
+};
+
+class FilmIntegrals {
+ public:
+  FilmIntegrals(const Material& material, const Rgb& wavelengths_nm, const ExactResolution& resolution);
+
+  const CosineBasis& basis() const { return basis_; }
+  // False if facets bend light, so that passages() is a quadrature over many cosines.
+  bool has_single_crossing() const { return !interface_.has_glossy_crossing(); }
+
+  // Ways of light along w, for all wavelengths not shorter than those of this object; none under total
+  // reflection. p_t(w -> m) dm is share times transmittance() at m.z = cosine.
+  std::vector<Passage> passages(const Vec3& w) const;
+  Rgb transmittance(const Passage& passage) const {
+    return interface_.power(passage.facet_cosine).transmittance;
+  }
+
+  // Directional albedo of the first surface, a smooth film's Dirac included.
+  Rgb first_albedo(const Vec3& w) const;
+
+  // B, symmetric: f^T B g = Int Int f(m.z) m.z f_below(m, m') m'.z g(m'.z) dm dm', one matrix a wavelength.
+  std::array<Matrix, 3> reflection() const;
+
+  // t^T f = Int (n0/n2)^2 w.z p_t(w -> m) f(m.z) dm dw: power that leaves the film altogether when the base
+  // sends the radiance f up.
+  std::array<Vector, 3> exit(const std::array<Matrix, 3>& reflection) const;
+
+ private:
+  // One direction a side of a facet: both cosines with the macro normal.
+  struct Meeting {
+    double cosine, partner;
+    Rgb weight;
+  };
+  enum class Event { reflection_below, passage };
+
+  const ThinFilm& film_of(Event event) const { return event == Event::passage ? film_ : film_below_; }
+  double phase(const ThinFilm& film, double cosine) const;
+  int visible_nodes() const;
+  int oscillation_panels(const ThinFilm& film, double low, double high) const;
+  std::vector<Rgb> moments(Event event, double low, double high) const;
+  void add_smooth_reflection(double low, double high, std::array<Matrix, 3>& sum) const;
+  template <class F>
+  void visit_visible(const Vec3& w, bool only_mirrored, F visit) const;
+  template <class F>
+  void visit_facets(Event event, F visit) const;
+  template <class F>
+  void visit_azimuths(Event event, double theta, const std::vector<FacetTurns::Turn>& turns, double cosine,
+                      const Rgb& weight, F visit) const;
+  double shadowed(Event event, const std::vector<FacetTurns::Turn>& turns, const Vec3& w,
+                  const Vec3& partner) const;
+  double wider() const { return std::max(material_.roughness.u, material_.roughness.v); }
+
+  Material material_;
+  ExactResolution resolution_;
+  FilmInterface interface_;
+  ThinFilm film_, film_below_;
+  Rgb wavelengths_nm_;
+  double index_ratio_;  // n0 / n2 if facets bend light, else 1
+  CosineBasis basis_;
+  GaussInterpolation cosine_panel_;
+  GaussRule fine_, normals_, azimuths_, visible_, visible_azimuths_;
+  FacetTurns turns_;
+};
+
+}  // namespace sunbeam

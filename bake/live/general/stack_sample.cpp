@@ -1,0 +1,109 @@
+// The general stack's sample(): one walk from wo that takes every turn by chance and ends where light leaves.
+#include "bake/live/general/stack_parts.h"
+#include "sunbeam/detail/warp.h"
+
+namespace sunbeam::walk {
+
+// One facet: true if it mirrors. `power` is multiplied by what that turn weighs.
+bool Stack::choose_mirror(const Place& at, double cosine, Powers& power, double& chance, Rng& rng) const {
+  Powers r;
+  reflectances(at, cosine, r);
+  const double mirrors = mirror_chance(at, r);
+  const bool is_mirrored = rng.uniform() < mirrors;
+  chance = is_mirrored ? mirrors : 1 - mirrors;
+  for (int j = 0; j < count_; ++j) power[j] *= (is_mirrored ? r[j] : 1 - r[j]) / chance;
+  return is_mirrored;
+}
+
+// From the first facet met at `at` until light leaves the film on either side.
+void Stack::wander_freely(Place at, Powers& power, Outcome& out, Rng& rng) const {
+  const Microsurface& facets = stack_.facets;
+  const Side start = at.side;
+  const Vec3 unbent = -at.travel;  // in the frame of the other side
+  for (out.facets = 1;; ++out.facets) {
+    const Vec3 h = facets.sample_facet(at.travel, rng);
+    out.facet_cosine = -dot(at.travel, h);
+    if (choose_mirror(at, out.facet_cosine, power, out.chance, rng)) {
+      at = {at.side, reflect(-at.travel, h), at.depth};
+    } else if (layers_.straight) {
+      out.side = opposite(start);
+      out.travel = unbent;
+      return;
+    } else {
+      Place passed;
+      out.is_lost = !pass(at, h, passed);  // rounding at total reflection
+      if (out.is_lost) return;
+      at = passed;
+    }
+    if (!facets.fly(at, rng)) {
+      out.side = at.side;
+      out.travel = at.travel;
+      return;
+    }
+  }
+}
+
+// Light that travels along x, in the frame of `side`, meets the film there.
+Stack::Outcome Stack::meet_film(Side side, const Vec3& x, bool is_entry, Powers& power, Rng& rng) const {
+  Outcome out;
+  if (stack_.multiple) {
+    Place at = stack_.facets.first_facet(side, x, rng);
+    at.is_entry = is_entry;
+    wander_freely(at, power, out, rng);
+    return out;
+  }
+  const Vec3 w = -x, h = sample_normal(w, rng);
+  out.facet_cosine = dot(w, h);
+  const bool is_mirrored = choose_mirror({side, x, 0, is_entry}, out.facet_cosine, power, out.chance, rng);
+  out.side = is_mirrored ? side : opposite(side);
+  out.travel = w;
+  if (is_mirrored)
+    out.travel = reflect(w, h);
+  else if (layers_.bends)
+    out.is_lost =
+        !refract(w, h, side == Side::outside ? layers_.index_ratio : 1 / layers_.index_ratio, out.travel);
+  out.is_lost = out.is_lost || out.travel.z <= 0;
+  if (out.is_lost) return out;
+  out.shadowing = !is_mirrored && layers_.straight ? 1 : shadowing(w, out.travel, false);
+  scale(power, count_, out.shadowing);
+  return out;
+}
+
+// From below the film through pigment and base back up to it.
+Vec3 Stack::return_to_film(Vec3 travel, Powers& power, Rng& rng) const {
+  const Slab& slab = stack_.slab;
+  double depth = 0;
+  for (;;) {
+    const double cosine = std::max(std::abs(travel.z), 1e-12);
+    const double to_border = (travel.z < 0 ? 1 - depth : depth) / cosine;
+    const double free_path = slab.scatters() ? slab.sample_free_path(rng) : to_border;
+    attenuate(std::min(free_path, to_border), power);
+    if (free_path < to_border) {
+      depth = std::clamp(depth - free_path * travel.z, 0.0, 1.0);
+      travel = slab.sample_phase(travel, rng);
+      continue;
+    }
+    if (travel.z > 0) return travel;
+    depth = 1;
+    travel = sample_cosine({rng.uniform(), rng.uniform()});
+    for (int j = 0; j < count_; ++j) power[j] *= layers_.albedo[j];
+    if (layers_.product)
+      for (int j = 0; j < count_; ++j) power[j] *= std::exp(-layers_.tau[j] / (cosine * travel.z));
+  }
+}
+
+StackSample Stack::sample(const Vec3& wo, Powers& power, Rng& rng) const {
+  std::fill_n(power.begin(), count_, 1.0);
+  Outcome film = meet_film(Side::outside, -wo, true, power, rng);
+  StackSample result;
+  result.is_first = film.side == Side::outside && film.facets == 1;
+  result.facet_cosine = film.facet_cosine;
+  result.weight = film.shadowing / film.chance;
+  while (!film.is_lost && film.side == Side::inside)
+    film = meet_film(Side::inside, -return_to_film(-film.travel, power, rng), false, power, rng);
+  result.is_lost = film.is_lost;
+  result.wi = film.travel;
+  return result;
+}
+
+}  // namespace sunbeam::walk

@@ -1,0 +1,56 @@
+// Importance of directions that leave the base, as a density over t = cos^2, where cos-weighted is uniform.
+//
+// Bins of equal probability: a sample is one look-up, and stays stratified when its uniform number is.
+#pragma once
+
+#include <array>
+
+#include "bake/live/walks/packet.h"
+
+namespace sunbeam::walk {
+
+class Guide {
+ public:
+  static constexpr int kBins = 64;
+  static constexpr double kCosineShare = 0.1;
+
+  // From the importance at the midpoints of equal bins of t, none negative. A share of the samples stays
+  // cos-weighted, which bounds 1 / density.
+  explicit Guide(const std::array<double, kBins>& importance);
+
+  template <class V>
+  struct Sample {
+    V square;       // t
+    V per_density;  // 1 / density over t
+  };
+  template <class V>
+  SUNBEAM_INLINE Sample<V> sample(const V& u) const;
+
+  // Density over t.
+  double density(double square) const;
+
+ private:
+  static constexpr double kLeastSquare = 1e-24;  // directions along the surface see nothing
+
+  std::array<double, kBins + 1> edge_;
+};
+
+template <>
+SUNBEAM_INLINE Guide::Sample<double> Guide::sample(const double& u) const {
+  const int bin = static_cast<int>(u * kBins);
+  const double width = edge_[bin + 1] - edge_[bin];
+  return {max(edge_[bin] + (u * kBins - bin) * width, kLeastSquare), width * kBins};
+}
+
+template <class V>
+SUNBEAM_INLINE Guide::Sample<V> Guide::sample(const V& u) const {
+  double at[kLanes];
+  (u * V(kBins)).store(at);
+  const auto bin = [&](int lane) { return static_cast<int>(at[lane]); };
+  const V low = V::generate([&](int lane) { return edge_[bin(lane)]; });
+  const V width = V::generate([&](int lane) { return edge_[bin(lane) + 1]; }) - low;
+  const V within = V::generate([&](int lane) { return at[lane] - bin(lane); });
+  return {max(low + within * width, V(kLeastSquare)), width * V(kBins)};
+}
+
+}  // namespace sunbeam::walk

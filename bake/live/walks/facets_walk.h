@@ -1,0 +1,319 @@
+// The base part of the rest with multiple facets, for a packet of walks at once: isotropic facets, clear
+// pigment (templates; see stack.h for the parts, microsurface.h for the facets).
+//
+// The base forgets azimuth and every event at a facet looks at signed polar cosines alone, so a walk is a
+// cosine and a height. Lanes need different numbers of facets between two visits of the base: every round is
+// one facet for every lane, and a lane that comes out below visits the base and flies on to its next facet
+// within the same round. No lane waits for others. What would leave upwards stays, with the chance that it
+// does as its weight, so that lanes fade and never die; roulette ends all of them together, by what is left
+// of their power.
+//
+// With "sum" a forecast stands in for what roulette ends: of what is still to come, from the power that is
+// left. Light that goes on is paid the difference, so a wrong forecast costs noise and no bias.
+//
+// Both sides of the film share one reflectance: that at the cosine outside.
+#pragma once
+
+#include "bake/live/walks/unidirectional.h"
+
+namespace sunbeam::walk {
+
+template <class V>
+class FacetsWalk {
+ public:
+  SUNBEAM_INLINE explicit FacetsWalk(const Layers& layers)
+      : layers_(layers), events_(layers), facets_(layers.alpha) {}
+
+  // Adds the packet's estimate of the base part of rest(wo[k], wi), 1/sr per wavelength, to
+  // sums[k * count + j]; k < exits.
+  SUNBEAM_INLINE void add(double wi, const double* wo, int exits, Rng& rng, double* sums) const {
+    if (layers_.product) {
+      for (int first = 0; first < exits; first += kMostExits)
+        add_product(wi, wo + first, std::min(exits - first, kMostExits), rng, sums + first * layers_.count);
+    } else {
+      add_sum(wi, wo, exits, rng, sums);
+    }
+  }
+
+  // Adds an estimate of the share of the light at the base that comes back to it, per wavelength, to sums.
+  SUNBEAM_INLINE void add_returns(Rng& rng, double* sums) const {
+    Arrival<V> light;
+    come_back(rng, light);
+    for (int j = 0; j < layers_.count; ++j) sums[j] += mean_of_lanes(light.throughput[j]);
+  }
+
+ private:
+  // Roulette starts when less than this is still to come: for walks over the base as a share of all that
+  // comes after the first visit, for single passages as a share of what enters. Where a forecast stands in
+  // for what ends, and where none does.
+  static constexpr double kForecastWalkEnd = 0.5, kForecastPassageEnd = 0.8;
+  static constexpr double kWalkEnd = 0.2, kPassageEnd = 0.05;
+  static constexpr double kNothing = 0.02;  // of what enters
+
+  // Between two facets or about to meet one, in the frame of a side: cosines > 0 lead away from the facets.
+  struct Flight {
+    V is_outside;  // 1 or 0
+    V travel;      // cosine
+    V height;      // ln of the share of the microsurface below, 0 above everything
+    Spectrum<V> power;
+    V total;  // of power
+  };
+
+  // What a facet has done.
+  struct Outcome {
+    V comes_out;  // below: 1 or 0
+    V share;      // uniform in (0, 1]: of the chance to fly at least as far as now
+  };
+
+  // With "sum" f1 is a product: all lanes of the walk, at all their visits, connect to all lanes of an exit.
+  SUNBEAM_INLINE void add_sum(double wi, const double* wo, int exits, Rng& rng, double* sums) const {
+    Spectrum<V> arrived;
+    for (int j = 0; j < layers_.count; ++j) arrived[j] = V(0);
+    walk(
+        wi, kForecastWalkEnd, rng,
+        [&](const V&, const Spectrum<V>& power, const auto& is_here) {
+          for (int j = 0; j < layers_.count; ++j) arrived[j] += select(is_here, power[j], V(0));
+        },
+        [&](const Spectrum<V>& ahead, double ended) {
+          for (int j = 0; j < layers_.count; ++j) arrived[j] += ahead[j] * V(ended);
+        });
+    std::array<double, kMostWavelengths> leaving;
+    for (int k = 0; k < exits; ++k) {
+      leave(wo[k], rng, leaving);
+      for (int j = 0; j < layers_.count; ++j)
+        sums[k * layers_.count + j] += mean_of_lanes(arrived[j]) * leaving[j];
+    }
+  }
+
+  // With "product" each lane connects to its own.
+  SUNBEAM_INLINE void add_product(double wi, const double* wo, int exits, Rng& rng, double* sums) const {
+    Arrival<V> exit[kMostExits];
+    Spectrum<V> sum[kMostExits];
+    for (int k = 0; k < exits; ++k) {
+      prepare_exit(wo[k], kPassageEnd, rng, exit[k], [](const Flight&, double) {});
+      for (int j = 0; j < layers_.count; ++j) sum[k][j] = V(0);
+    }
+    const auto connect = [&](const V& cosine, const Spectrum<V>& power, const auto& is_here) {
+      for (int k = 0; k < exits; ++k) {
+        Spectrum<V> value;
+        for (int j = 0; j < layers_.count; ++j)
+          value[j] = select(is_here, power[j] * exit[k].throughput[j], V(0));
+        events_.attenuate(V(1) / (select(is_here, cosine, V(1)) * exit[k].cosine), value);
+        for (int j = 0; j < layers_.count; ++j) sum[k][j] += value[j];
+      }
+    };
+    walk(wi, kWalkEnd, rng, connect, [](const Spectrum<V>&, double) {});
+    for (int k = 0; k < exits; ++k)
+      for (int j = 0; j < layers_.count; ++j) sums[k * layers_.count + j] += mean_of_lanes(sum[k][j]);
+  }
+
+  // Calls visit(cosine, power, mask of the lanes that are at the base) once a round, and
+  // forecast(ahead, ended) where roulette ends the share `ended` of what is ahead, negative where it
+  // multiplies the walk instead.
+  template <class Visit, class Forecast>
+  SUNBEAM_INLINE void walk(double wi, double end, Rng& rng, Visit visit, Forecast forecast) const {
+    Flight light;
+    start(wi, light, rng);
+    V path(0);  // through the pigment, not yet paid
+    double later = 0;
+    for (int j = 0; j < layers_.count; ++j) later += layers_.visits[j] - 1;
+    const double least = max(end * later, kNothing * layers_.count);
+    const std::array<double, kMostWavelengths> first = passing(wi);
+    for (;;) {
+      Outcome facet = meet(wi, light, rng);
+      const auto is_here = facet.comes_out > V(0.5);
+      const V cosine = light.travel;
+      const V down = layers_.product ? V(0) : V(1) / max(cosine, V(1e-12));
+      events_.attenuate(select(is_here, path + down, V(0)), light.power);
+      visit(cosine, light.power, is_here);
+
+      Spectrum<V> ahead;
+      V left(0);
+      for (int j = 0; j < layers_.count; ++j) {
+        const double visits = layers_.visits[j];
+        const V in_flight = select(path > V(0), V(layers_.later_visits[j]), V(visits * first[j]));
+        ahead[j] = light.power[j] * select(is_here, V(visits - 1), in_flight);
+        left += ahead[j];
+      }
+      const double factor = go_on(mean_of_lanes(left), least, rng);
+      if (factor != 1) forecast(ahead, 1 - factor);
+      if (factor == 0) return;
+
+      const auto up = events_.leave_base(layers_.guide, rng);
+      light.total = V(0);
+      for (int j = 0; j < layers_.count; ++j) {
+        light.power[j] *= select(is_here, V(factor * layers_.albedo[j]) * up.share, V(factor));
+        light.total += light.power[j];
+      }
+      const V way = layers_.product ? up.cosine * cosine : up.cosine;
+      path = select(is_here, V(1) / way, path);
+      light.travel = select(is_here, -up.cosine, cosine);
+      light.height = select(is_here, V(0), light.height);
+      fly(select(is_here, V(1) - Uniform<V>::draw(rng), facet.share), light);
+    }
+  }
+
+  // What the base's kd / pi and the passage from outside along wo make of light, the mean over all lanes.
+  SUNBEAM_INLINE void leave(double wo, Rng& rng, std::array<double, kMostWavelengths>& mean) const {
+    Arrival<V> exit;
+    std::array<double, kMostWavelengths> ended{};
+    prepare_exit(wo, kForecastPassageEnd, rng, exit, [&](const Flight& light, double share) {
+      for (int j = 0; j < layers_.count; ++j) ended[j] += mean_of_lanes(light.power[j]) * share;
+    });
+    const std::array<double, kMostWavelengths> attenuation = passing(wo);
+    for (int j = 0; j < layers_.count; ++j)
+      mean[j] = mean_of_lanes(exit.throughput[j]) +
+                ended[j] * attenuation[j] * layers_.albedo[j] * kInvPi * layers_.radiance_scale;
+  }
+
+  // Forecast of what the pigment lets through on the way between film and base; w outside.
+  SUNBEAM_INLINE std::array<double, kMostWavelengths> passing(double w) const {
+    const double below = 1 - squared(layers_.index_ratio) * (1 - squared(w));
+    const double path = 1 / sqrt(max(below, 0.01));
+    std::array<double, kMostWavelengths> share;
+    for (int j = 0; j < layers_.count; ++j)
+      share[j] = j > 0 && layers_.same_tau ? share[0] : std::exp(-layers_.tau[j] * path);
+    return share;
+  }
+
+  // From the base's kd / pi on.
+  template <class Forecast>
+  SUNBEAM_INLINE void prepare_exit(double wo, double end, Rng& rng, Arrival<V>& exit,
+                                   Forecast forecast) const {
+    Flight light;
+    start(wo, light, rng);
+    come_out(wo, end, light, exit, rng, forecast);
+    for (int j = 0; j < layers_.count; ++j)
+      exit.throughput[j] *= V(layers_.albedo[j] * kInvPi * layers_.radiance_scale);
+  }
+
+  // From the base to the film and back.
+  SUNBEAM_INLINE void come_back(Rng& rng, Arrival<V>& arrival) const {
+    const auto up = events_.leave_base(layers_.guide, rng);
+    Flight light;
+    light.is_outside = light.height = light.total = V(0);
+    light.travel = -up.cosine;
+    for (int j = 0; j < layers_.count; ++j) light.power[j] = V(layers_.albedo[j]) * up.share;
+    events_.attenuate(V(1) / up.cosine, light.power);
+    for (int j = 0; j < layers_.count; ++j) light.total += light.power[j];
+    fly(V(1) - Uniform<V>::draw(rng), light);
+    come_out(1, kPassageEnd, light, arrival, rng, [](const Flight&, double) {});
+  }
+
+  // From facet to facet until every lane has come out below or roulette has ended the others; forecast(light,
+  // ended) as above.
+  template <class Forecast>
+  SUNBEAM_INLINE void come_out(double unbent, double end, Flight& light, Arrival<V>& arrival, Rng& rng,
+                               Forecast forecast) const {
+    arrival.cosine = V(1);
+    for (int j = 0; j < layers_.count; ++j) arrival.throughput[j] = V(0);
+    end *= mean_of_lanes(light.total);
+    for (;;) {
+      const Outcome facet = meet(unbent, light, rng);
+      const auto is_here = (facet.comes_out > V(0.5)) & (light.total > V(0));
+      arrival.cosine = select(is_here, light.travel, arrival.cosine);
+      for (int j = 0; j < layers_.count; ++j) {
+        arrival.throughput[j] = select(is_here, light.power[j], arrival.throughput[j]);
+        light.power[j] = select(is_here, V(0), light.power[j]);
+      }
+      light.total = select(is_here, V(0), light.total);
+      const double factor = go_on(mean_of_lanes(light.total), end, rng);
+      if (factor != 1) forecast(light, 1 - factor);
+      if (factor == 0) break;
+      for (int j = 0; j < layers_.count; ++j) light.power[j] *= V(factor);
+      light.total *= V(factor);
+      fly(facet.share, light);
+    }
+    if (!layers_.product) events_.attenuate(V(1) / arrival.cosine, arrival.throughput);
+  }
+
+  // Keeps what is left at `end` by ending packets below it: the factor to go on with, or 0.
+  SUNBEAM_INLINE static double go_on(double left, double end, Rng& rng) {
+    if (left >= end && left > 0) return 1;
+    return rng.uniform() * end < left ? end / left : 0;
+  }
+
+  // From outside to the first facet.
+  SUNBEAM_INLINE void start(double w, Flight& light, Rng& rng) const {
+    light.is_outside = V(1);
+    light.travel = V(-w);
+    light.height = V(0);
+    for (int j = 0; j < layers_.count; ++j) light.power[j] = V(1);
+    light.total = V(layers_.count);
+    fly(V(1) - Uniform<V>::draw(rng), light);
+  }
+
+  // On to the next facet, which only `share` of all light gets at least as far to.
+  SUNBEAM_INLINE void fly(const V& share, Flight& light) const {
+    light.height = min(light.height - log_of_share(share) * light.travel / facets_.area(light.travel), V(0));
+  }
+
+  // Mean number of facets on the way out, for lanes that lead away from the facets.
+  SUNBEAM_INLINE V facets_ahead(const V& travel, const V& height) const {
+    return -height * facets_.area(travel) / max(travel, V(1e-12));
+  }
+
+  // One facet, from where a straight passage leads to the cosine `unbent` below.
+  SUNBEAM_INLINE Outcome meet(double unbent, Flight& light, Rng& rng) const {
+    const V w = -light.travel, one(1), half(0.5), zero(0);
+    const auto was_outside = light.is_outside > half;
+    const auto h = facets_.sample(w, facets_.root(w), rng);
+    const V cosine = max(h.cosine, zero);
+    const V ratio = select(was_outside, V(layers_.index_ratio), V(1 / layers_.index_ratio));
+    const V far = sqrt(max(one - squared(ratio) * (one - squared(cosine)), zero));
+
+    Spectrum<V> r;
+    V mirrors(0);  // power
+    const FilmLanes<V> film(layers_.film, layers_.phases, select(was_outside, cosine, far));
+    film.reflectances([&](int j, const V& value) {
+      r[j] = value;
+      mirrors += light.power[j] * value;
+    });
+    V passes = (light.total - mirrors) * film.through();
+
+    const V mirrored = min(V(2) * cosine * h.cos_h - w, one);
+    V passed = min(ratio * w + (far - ratio * cosine) * h.cos_h, one), passed_height = light.height;
+    if (layers_.straight) {
+      passes = select(was_outside, passes, zero);
+      passed = V(unbent);
+    } else {
+      passed_height = log_of_share(one - exp_negative(light.height));
+    }
+
+    // To the outside or the inside? By power, and outside about by the chance x / (1 + x) to stay there.
+    const V out = select(was_outside, mirrored, passed);
+    const V x =
+        select(out > zero, facets_ahead(out, select(was_outside, light.height, passed_height)), V(1e12));
+    const V outside = select(was_outside, mirrors, passes) * x;
+    const V whole = outside + select(was_outside, passes, mirrors) * (one + x);
+    const auto goes_out = outside > Uniform<V>::draw(rng) * whole;
+    light.is_outside = select(goes_out, one, zero);
+    const auto is_mirrored = select(was_outside, light.is_outside, one - light.is_outside) > half;
+    light.travel = select(is_mirrored, mirrored, passed);
+    light.height = select(is_mirrored, light.height, passed_height);
+
+    const V ahead = facets_ahead(light.travel, light.height);
+    V escapes = select(light.travel > zero, exp_negative(-ahead), zero);
+    if (layers_.straight) escapes = select(is_mirrored, escapes, one);
+    const V stays = select(goes_out, one - escapes, one);
+    const V chosen = select(is_mirrored, mirrors, passes) * select(goes_out, x, one + x);
+    const V factor = whole * stays / max(chosen, V(1e-300));
+    const V mirror_factor = select(is_mirrored, factor, -factor),
+            pass_factor = select(is_mirrored, zero, factor);
+    light.total = V(0);
+    for (int j = 0; j < layers_.count; ++j) {
+      light.power[j] *= pass_factor + mirror_factor * r[j];
+      light.total += light.power[j];
+    }
+
+    const V u = Uniform<V>::draw(rng);
+    const V share = one - u * stays;
+    return {select(escapes >= share, one - light.is_outside, zero), share};
+  }
+
+  const Layers& layers_;
+  Events<V> events_;
+  Facets<V> facets_;
+};
+
+}  // namespace sunbeam::walk

@@ -1,0 +1,161 @@
+// The Airy film of bake/optics/thin_film.h for a packet of directions at each of many wavelengths.
+//
+// With C^2, S^2 = cos^2, sin^2(k c1), both from cos(phi), phi = 2 k c1, the powers of one polarisation are
+//     R = [(q0 - q2)^2 C^2 + (b - d)^2 S^2 / c1^2] / D,   T = 4 q0 q2 / D,
+//     D =  (q0 + q2)^2 C^2 + (b + d)^2 S^2 / c1^2,
+// b = q0 q2 c1 / q1, d = q1 c1. All but phi is shared by the wavelengths. Where the wave is evanescent in the
+// film, C^2 and S^2 / c1^2 become 1 and tanh^2 / |c1|^2, and T is divided by cosh^2.
+#pragma once
+
+#include <array>
+
+#include "bake/live/walks/packet.h"
+#include "bake/optics/thin_film.h"
+#include "sunbeam/detail/wavelengths.h"
+
+namespace sunbeam::walk {
+
+// k = 2 pi n1 d0 / lambda of each wavelength.
+struct FilmPhases {
+  std::array<double, kMostWavelengths> k{};
+  int count = 0;
+  bool is_bare = false;  // no film: k = 0 throughout
+  bool is_even = false;  // k[j] = k[0] + j step
+
+  double step() const { return k[1] - k[0]; }
+};
+
+// One side of a film with all divisions by indices done: cos^2 in a medium = offset + slope cos^2 outside.
+struct FilmSide {
+  explicit FilmSide(const ThinFilm& film)
+      : n0(film.exterior_ior),
+        n1(film.film_ior),
+        n2(film.base_ior),
+        per_n0(1 / n0),
+        per_n1(1 / n1),
+        per_n2(1 / n2),
+        offset1((n1 - n0) * (n1 + n0) * square(per_n1)),
+        slope1(square(n0 * per_n1)),
+        offset2((n2 - n0) * (n2 + n0) * square(per_n2)),
+        slope2(square(n0 * per_n2)) {}
+
+  double n0, n1, n2, per_n0, per_n1, per_n2, offset1, slope1, offset2, slope2;
+};
+
+template <class V>
+class FilmLanes {
+ public:
+  // At cosines `c0` in the film's exterior; those <= 0 reflect everything.
+  SUNBEAM_INLINE FilmLanes(const FilmSide& film, const FilmPhases& phases, const V& c0) : phases_(phases) {
+    const V c2_squared = V(film.offset2) + squared(c0) * V(film.slope2);
+    const auto through = (c2_squared > V(0)) & (c0 > V(0));
+    through_ = select(through, V(1), V(0));
+    const V c2 = select(through, sqrt(max(c2_squared, V(0))), V(1));  // anything but 0 / 0
+    const V cosine = select(through, c0, V(1));
+    if (phases.is_bare) {
+      bare_polarisation(V(film.n0) * cosine, V(film.n2) * c2, s_);
+      bare_polarisation(cosine * V(film.per_n0), c2 * V(film.per_n2), p_);
+      return;
+    }
+    c1_squared_ = V(film.offset1) + squared(cosine) * V(film.slope1);
+    polarisation(V(film.n0) * cosine, V(film.n2) * c2, V(film.per_n1), V(film.n1) * c1_squared_, s_);
+    polarisation(cosine * V(film.per_n0), c2 * V(film.per_n2), V(film.n1), c1_squared_ * V(film.per_n1), p_);
+    const V tiny(1e-12);
+    may_be_evanescent_ = film.n1 < film.n0;
+    c1_ = sqrt(may_be_evanescent_ ? max(max(c1_squared_, -c1_squared_), tiny) : max(c1_squared_, tiny));
+    per_c1_squared_ = V(1) / squared(c1_);
+  }
+
+  // The refracted squared cosine is positive: light gets through.
+  SUNBEAM_INLINE V through() const { return through_; }
+
+  // Calls visit(j, reflectance) for each wavelength.
+  template <class F>
+  SUNBEAM_INLINE void reflectances(F visit) const {
+    each_phase(visit, [&](const V& c, const V& s, const V&) { return reflectance(c, s); });
+  }
+  // Each lane at a wavenumber k of its own; k = 0 if the film is bare.
+  SUNBEAM_INLINE V reflectance_at(const V& k) const {
+    const auto power = [&](const V& c, const V& s, const V&) { return reflectance(c, s); };
+    if (phases_.is_bare) return power(V(1), V(0), V(1));
+    if (may_be_evanescent_) return evanescent(V(2) * k * c1_, power);
+    return wave(cos_of_phase(V(2) * k * c1_), power);
+  }
+  template <class F>
+  SUNBEAM_INLINE void transmittances(F visit) const {
+    each_phase(visit, [&](const V& c, const V& s, const V& scale) {
+      const V ds = s_.sum * c + s_.plus * s, dp = p_.sum * c + p_.plus * s;
+      return through_ * scale * (s_.product * dp + p_.product * ds) / (ds * dp);
+    });
+  }
+
+ private:
+  SUNBEAM_INLINE V reflectance(const V& c, const V& s) const {
+    const V ds = s_.sum * c + s_.plus * s, dp = p_.sum * c + p_.plus * s;
+    const V ns = s_.difference * c + s_.minus * s, np = p_.difference * c + p_.minus * s;
+    return V(1) + through_ * (V(0.5) * (ns * dp + np * ds) / (ds * dp) - V(1));
+  }
+
+  struct Polarisation {
+    V sum, difference;  // (q0 +- q2)^2
+    V plus, minus;      // (b +- d)^2
+    V product;          // 2 q0 q2: half of 4 q0 q2
+  };
+
+  SUNBEAM_INLINE static void polarisation(const V& q0, const V& q2, const V& per_n, const V& d,
+                                          Polarisation& p) {
+    bare_polarisation(q0, q2, p);
+    const V b = q0 * q2 * per_n;
+    p.plus = squared(b + d);
+    p.minus = squared(b - d);
+  }
+  SUNBEAM_INLINE static void bare_polarisation(const V& q0, const V& q2, Polarisation& p) {
+    p = {squared(q0 + q2), squared(q0 - q2), V(0), V(0), V(2) * q0 * q2};
+  }
+
+  // visit(j, power(C^2, S^2 / c1^2, 1 / cosh^2)) for each wavelength.
+  template <class F, class Power>
+  SUNBEAM_INLINE void each_phase(F& visit, Power power) const {
+    const int count = phases_.count;
+    if (phases_.is_bare) {
+      const V same = power(V(1), V(0), V(1));
+      for (int j = 0; j < count; ++j) visit(j, same);
+    } else if (may_be_evanescent_) {
+      for (int j = 0; j < count; ++j) visit(j, evanescent(V(2 * phases_.k[j]) * c1_, power));
+    } else if (!phases_.is_even) {
+      for (int j = 0; j < count; ++j) visit(j, wave(cos_of_phase(V(2 * phases_.k[j]) * c1_), power));
+    } else {
+      // cos((j + 1) x) = 2 cos(x) cos(j x) - cos((j - 1) x).
+      const V twice = V(2) * cos_of_phase(V(2 * phases_.step()) * c1_);
+      V previous = cos_of_phase(V(2 * (phases_.k[0] - phases_.step())) * c1_),
+        current = cos_of_phase(V(2 * phases_.k[0]) * c1_);
+      for (int j = 0; j < count; ++j) {
+        visit(j, wave(current, power));
+        const V next = twice * current - previous;
+        previous = current;
+        current = next;
+      }
+    }
+  }
+
+  template <class Power>
+  SUNBEAM_INLINE V wave(const V& cosine, const Power& power) const {
+    return power(V(0.5) + V(0.5) * cosine, (V(0.5) - V(0.5) * cosine) * per_c1_squared_, V(1));
+  }
+  template <class Power>
+  SUNBEAM_INLINE V evanescent(const V& phase, const Power& power) const {
+    const auto is_wave = c1_squared_ > V(0);
+    const V cosine = cos_of_phase(select(is_wave, phase, V(0)));
+    const V e = exp_negative(-phase), tanh = (V(1) - e) / (V(1) + e);
+    return power(select(is_wave, V(0.5) + V(0.5) * cosine, V(1)),
+                 select(is_wave, V(0.5) - V(0.5) * cosine, squared(tanh)) * per_c1_squared_,
+                 select(is_wave, V(1), V(4) * e / squared(V(1) + e)));
+  }
+
+  const FilmPhases& phases_;
+  Polarisation s_, p_;
+  V through_, c1_squared_, c1_, per_c1_squared_;
+  bool may_be_evanescent_ = false;
+};
+
+}  // namespace sunbeam::walk

@@ -1,0 +1,12 @@
+#include "bake/live/walks/bidirectional.h"
+#include "bake/live/walks/kernels.h"
+
+namespace sunbeam::walk {
+
+template <class Arch>
+SUNBEAM_FLATTEN void bidirectional(const Layers& layers, double wi, double wo, Rng& rng, double* sums) {
+  BidirectionalWalk<Packet<Arch>>(layers).add(wi, wo, rng, sums);
+}
+template void bidirectional<SUNBEAM_ARCH>(const Layers&, double, double, Rng&, double*);
+
+}  // namespace sunbeam::walk

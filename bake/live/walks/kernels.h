@@ -1,0 +1,37 @@
+// The walks compiled for each instruction set, and the choice of one for this machine.
+//
+// The kernel_*.cpp are compiled once for each instruction set, with SUNBEAM_ARCH its name.
+#pragma once
+
+#include "bake/live/walks/layers.h"
+
+namespace sunbeam::walk {
+
+// The first three add estimates of rest, 1/sr per wavelength, to sums (see unidirectional.h, bidirectional.h;
+// of the base part alone: facets_walk.h); wi and wo are cosines. None allocates memory. All instruction sets
+// give the same bits.
+struct Kernels {
+  const char* name;
+  void (*unidirectional)(const Layers& layers, double wi, const double* wo, int exits, Rng& rng,
+                         double* sums);
+  void (*bidirectional)(const Layers& layers, double wi, double wo, Rng& rng, double* sums);
+  void (*multiple_facets)(const Layers& layers, double wi, const double* wo, int exits, Rng& rng,
+                          double* sums);
+  // Of its share of light that comes back to the base; see facets_walk.h.
+  void (*returns)(const Layers& layers, Rng& rng, double* sums);
+  // The film at one cosine and all wavelengths; writes up to kMostWavelengths.
+  void (*reflectances)(const FilmSide& film, const FilmPhases& phases, double cosine, double* r);
+  // power[j] *= exp(-tau[j] length), j < count; reads kMostWavelengths of tau.
+  void (*attenuate)(const double* tau, double length, int count, double* power);
+};
+
+// What every machine of this kind of processor has (x86-64: SSE2; ARM: NEON).
+extern const Kernels kBaselineKernels;
+#ifdef SUNBEAM_AVX2_KERNELS
+extern const Kernels kAvx2Kernels;
+#endif
+
+// The fastest that this machine runs, or the baseline if SUNBEAM_KERNELS asks for it (core/processor.h).
+const Kernels& best_kernels();
+
+}  // namespace sunbeam::walk

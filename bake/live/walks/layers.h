@@ -1,0 +1,70 @@
+// The layered material as the walks need it: numbers only, prepared once.
+#pragma once
+
+#include <array>
+
+#include "bake/live/walks/base_guide.h"
+#include "bake/live/walks/film_packets.h"
+#include "sunbeam/detail/wavelengths.h"
+
+namespace sunbeam::walk {
+
+struct Layers {
+  static constexpr double kLeastWorth = 0.05;
+
+  Layers(const Material& material, const Wavelengths& wavelengths);  // 1 to kMostWavelengths of them
+
+  FilmSide film;        // as seen from outside
+  FilmSide film_below;  // as seen from below: reversed, or the same in "straight" mode
+  FilmPhases phases;    // of either
+  double alpha;         // 0: smooth
+  double index_ratio;   // n0 / n2 if passing light bends, else 1
+  bool bends;
+  bool straight;  // the passage has no shadowing
+
+  int count;                                    // of wavelengths
+  std::array<double, kMostWavelengths> albedo;  // of the base
+  std::array<double, kMostWavelengths> tau;     // optical depth of the pigment
+  double least_tau;
+  double brightest_albedo;
+  bool same_tau;  // at all wavelengths
+  bool product;   // exp(-tau / (cos_i cos_o)); else exp(-tau (1 / cos_i + 1 / cos_o))
+  double radiance_scale;
+
+  // Forecast of the power that ever visits the base, for walks that end (facets_walk.h): of light that is
+  // there, 1 / (1 - share that comes back), and of light on its way back.
+  std::array<double, kMostWavelengths> visits{}, later_visits{};
+  Guide guide;         // for walks that go on: towards what the film throws back and the pigment lets through
+  Guide open_guide;    // for walks that may leave: towards what gets out, now or later
+  double worth_below;  // of the light that enters the film, about what leaves again; at least kLeastWorth, 1
+                       // if it scatters
+
+  // Takes `picks` of the wavelengths of `all`, the same material: the k-th becomes its number which(k).
+  template <class Which>
+  void pick(const Layers& all, std::size_t picks, Which which) {
+    count = phases.count = static_cast<int>(picks);
+    phases.is_even = false;
+    for (std::size_t k = 0; k < picks; ++k) {
+      phases.k[k] = all.phases.k[which(k)];
+      albedo[k] = all.albedo[which(k)];
+      tau[k] = all.tau[which(k)];
+      visits[k] = all.visits[which(k)];
+      later_visits[k] = all.later_visits[which(k)];
+    }
+    summarise();
+  }
+
+  // Of mirroring at the upper surface: equal shares of what reflects there and of what comes back from below.
+  double entry_chance(double reflectance) const {
+    return reflectance / (reflectance + (1 - reflectance) * worth_below);
+  }
+
+  bool is_smooth() const { return alpha == 0; }
+  // Facets bend what passes, so that a given direction outside has a density of directions inside.
+  bool has_glossy_crossing() const { return alpha > 0 && bends; }
+
+ private:
+  void summarise();  // over wavelengths
+};
+
+}  // namespace sunbeam::walk

@@ -1,0 +1,91 @@
+#include "bake/optics/spectrum.h"
+
+#include <algorithm>
+
+#include "sunbeam/core/error.h"
+#include "sunbeam/detail/text.h"
+
+namespace sunbeam {
+namespace {
+
+double path_nm(const Material& material) { return 2 * material.film_ior * material.film_thickness_nm; }
+
+// Every thin film takes all the path that its number of nodes resolves.
+WavelengthQuadrature quadrature_for(Illuminant illuminant, ColorSpace color_space, double longest_path_nm) {
+  const int nodes = nodes_for_path(longest_path_nm);
+  if (static_cast<std::size_t>(nodes) > kMostWavelengths)
+    throw Error("spectrum: found an optical path 2 n1 d0 of " + to_text(longest_path_nm) +
+                " nm; allowed: up to " + to_text(resolved_path_nm(kMostWavelengths)) + " nm");
+  return fitted(illuminant, color_space, nodes, resolved_path_nm(nodes));
+}
+
+}  // namespace
+
+Spectrum::Spectrum(Illuminant illuminant, ColorSpace color_space, double longest_path_nm,
+                   AbsorptionShape absorption)
+    : illuminant_(illuminant),
+      color_space_(color_space),
+      quadrature_(quadrature_for(illuminant, color_space, longest_path_nm)),
+      absorption_(std::move(absorption)) {}
+
+Rgb Spectrum::from_rec709(const Rgb& color) const {
+  if (color_space_ == ColorSpace::rec709) return color;
+  return rgb_to_rgb(ColorSpace::rec709, color_space_) * color;
+}
+
+Rgb Spectrum::set_albedo(const SpectralCurve& albedo) {
+  const Rgb folded = quadrature_.fold_function([&](double nm) { return interpolate(albedo, nm); });
+  albedo_ = transform(folded, [](double x) { return std::clamp(x, 0.0, 1.0); });
+  albedo_curve_ = albedo;
+  return albedo_;
+}
+
+void Spectrum::set_albedo(const Rgb& albedo) {
+  albedo_curve_ = albedo_curve(albedo);
+  albedo_ = albedo;
+}
+
+SpectralCurve Spectrum::albedo_curve(const Rgb& albedo) const {
+  if (!albedo_curve_.empty() && albedo == albedo_) return albedo_curve_;
+  const std::vector<double> uplifted = uplift_albedo(quadrature_, albedo);
+  SpectralCurve curve;
+  for (std::size_t k = 0; k < uplifted.size(); ++k)
+    curve.emplace_back(quadrature_.wavelength_nm[k], uplifted[k]);
+  std::sort(curve.begin(), curve.end());
+  return curve;
+}
+
+Wavelengths Spectrum::wavelengths(const Material& material) const {
+  if (!is_full()) return Wavelengths::rgb3(material);
+  const double resolved = resolved_path_nm(quadrature_.size());
+  if (path_nm(material) > resolved)
+    throw Error("key 'film_thickness_nm': found " + to_text(material.film_thickness_nm) +
+                "; the wavelengths of the recipe resolve films up to " +
+                to_text(resolved / (2 * material.film_ior)) + " nm");
+  const SpectralCurve albedo = albedo_curve(material.albedo);
+  Wavelengths w;
+  w.nm = quadrature_.wavelength_nm;
+  w.weight = quadrature_.weight;
+  for (const double nm : w.nm) {
+    w.albedo.push_back(interpolate(albedo, nm));
+    w.absorption.push_back(absorption_(nm));
+  }
+  return w;
+}
+
+Wavelengths Spectrum::monochromatic(const Material& material, double nm) const {
+  if (!is_full()) return Wavelengths::monochromatic(material, nm);
+  return {{nm}, {interpolate(albedo_curve(material.albedo), nm)}, {absorption_(nm)}, {Rgb(1)}};
+}
+
+std::map<std::string, std::string> Spectrum::attributes() const {
+  if (!is_full()) return {{"spectrum", "rgb3"}};
+  std::vector<double> nm = quadrature_.wavelength_nm;
+  std::sort(nm.begin(), nm.end());
+  return {{"spectrum", "full"},
+          {"color_space", std::string(to_string(color_space_))},
+          {"illuminant", std::string(to_string(illuminant_))},
+          {"wavelengths", to_text(nm)}};
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,257 @@
+#include "bake/recipe/recipe.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bake/factored/axes.h"
+#include "runtime/config/config.h"
+#include "sunbeam/core/error.h"
+#include "sunbeam/detail/file.h"
+#include "sunbeam/detail/hash.h"
+
+namespace sunbeam {
+namespace {
+
+Range range_of(std::string_view key) {
+  const Interval allowed = allowed_interval(key);
+  return {allowed.low, allowed.high};
+}
+
+constexpr const char* kRoughness = "roughness";
+
+// One value, or [alpha_u, alpha_v].
+Roughness read_roughness(const ConfigTable& config, const Roughness& fallback) {
+  if (!config.has(kRoughness)) return fallback;
+  const auto values = config.is_list(kRoughness)
+                          ? config.numbers(kRoughness, range_of(kRoughness))
+                          : std::vector{config.number(kRoughness, range_of(kRoughness))};
+  if (values.empty() || values.size() > 2)
+    config.fail(kRoughness,
+                fmt::format("found {} numbers; allowed: one number or a list of 2", values.size()));
+  const Roughness roughness(values.front(), values.back());
+  if (!roughness.is_allowed())
+    config.fail(kRoughness,
+                fmt::format("found {}; allowed: {}", fmt::join(values, ", "), allowed_roughness()));
+  return roughness;
+}
+
+// All but the albedo, which waits for the spectrum.
+Material read_material(const ConfigTable& config) {
+  Material m;
+  m.transmission = static_cast<Transmission>(config.choice("transmission", {"straight", "refract"}, 1));
+  m.absorption_path = static_cast<AbsorptionPath>(config.choice("absorption_path", {"product", "sum"}, 1));
+  const auto number = [&](const char* key, double& value) {
+    value = config.number(key, range_of(key), value);
+  };
+  number("film_thickness_nm", m.film_thickness_nm);
+  number("exterior_ior", m.exterior_ior);
+  number("film_ior", m.film_ior);
+  number("base_ior", m.base_ior);
+  number("absorption_per_nm", m.absorption_per_nm);
+  number("pigment_thickness_nm", m.pigment_thickness_nm);
+  number("scattering_per_nm", m.scattering_per_nm);
+  number("anisotropy", m.anisotropy);
+  m.roughness = read_roughness(config, m.roughness);
+  m.microfacet = static_cast<Microfacet>(config.choice("microfacet", {"single", "multiple"}, 0));
+  if (const auto defect = m.defect()) config.fail(defect->key, defect->text);
+  return m;
+}
+
+// The axes without nodes. Their coordinates follow how the rest depends on a parameter: like the square root
+// of the base IOR's distance from index match, and ever more slowly with absorption; less so with that of a
+// scattering pigment, whose remainder holds the decay itself.
+std::array<Axis, 3> bare_axes(const Material& material) {
+  Axis thickness{kParameterNames[0], "nm", {}};
+  Axis base_ior{kParameterNames[1], "1", {}, 2, 0, material.exterior_ior};
+  Axis absorption{kParameterNames[2], "1/nm", {}, material.scatters() ? 2.0 : 3.0};
+  return {thickness, base_ior, absorption};
+}
+
+// A base thinner than the exterior has no square root at its first node.
+double power_above(const Axis& axis, double first) { return first < axis.origin ? 1 : axis.power; }
+
+std::vector<double> read_nodes(const ConfigTable& grid, const Axis& axis) {
+  const std::string& key = axis.name;
+  const Range allowed = range_of(key);
+  if (!grid.is_table(key)) {
+    const auto nodes = grid.numbers(key, allowed);
+    for (std::size_t i = 1; i < nodes.size(); ++i)
+      if (nodes[i] <= nodes[i - 1])
+        grid.fail(key,
+                  fmt::format("found {} after {}; allowed: a list that increases", nodes[i], nodes[i - 1]));
+    if (nodes.empty()) grid.fail(key, "the list is empty; allowed: at least one number");
+    return nodes;
+  }
+  const ConfigTable range = grid.table(key);
+  const double from = range.number("from", allowed);
+  const double to = range.number("to", {from, allowed.high});
+  const int count = range.integer("count", 1, 4096);
+  if ((count == 1) != (from == to))
+    range.fail(
+        "count",
+        fmt::format("found {} nodes from {} to {}; allowed: one node with from = to, several with from < to",
+                    count, from, to));
+  return spaced_nodes(from, to, static_cast<std::size_t>(count), power_above(axis, from), axis.origin);
+}
+
+std::vector<Axis> read_grid(const ConfigTable& grid, const Material& material) {
+  const auto defaults = Parameters::of(material).values();
+  std::vector<Axis> axes;
+  for (Axis axis : bare_axes(material)) {
+    axis.nodes = grid.has(axis.name) ? read_nodes(grid, axis) : std::vector{defaults[axes.size()]};
+    axis.power = power_above(axis, axis.nodes.front());
+    axes.push_back(std::move(axis));
+  }
+  return axes;
+}
+
+// The thickest film of the recipe has to be resolved by kMostWavelengths wavelengths.
+double longest_path(const ConfigTable& grid_config, const ConfigTable& material_config,
+                    const std::vector<Axis>& grid, const Material& material) {
+  const double in_grid = grid[0].high();
+  const double thickest = std::max(in_grid, material.film_thickness_nm);
+  const double path = 2 * material.film_ior * thickest, longest = resolved_path_nm(kMostWavelengths);
+  if (path > longest)
+    (thickest == in_grid && grid_config.has(kParameterNames[0]) ? grid_config : material_config)
+        .fail(kParameterNames[0],
+              fmt::format("found {:g}; allowed with spectrum.mode \"full\" and film_ior {:g}: up to {:g}",
+                          thickest, material.film_ior, std::floor(longest / (2 * material.film_ior))));
+  return path;
+}
+
+constexpr const char* kAbsorptionSpectrum = "absorption_spectrum";
+constexpr Range kWavelengthNm{1, 1e6};
+
+AbsorptionShape read_absorption_shape(const ConfigTable& material) {
+  if (!material.is_list(kAbsorptionSpectrum)) {
+    const std::vector<std::string> names{"flat", "eumelanin", "pheomelanin"};
+    const int choice = material.choice(kAbsorptionSpectrum, names, 0);
+    return choice == 0 ? AbsorptionShape::flat() : AbsorptionShape::pigment(names[choice]);
+  }
+  const auto points = material.curve(kAbsorptionSpectrum, kWavelengthNm, {0, 1e9});
+  try {
+    return AbsorptionShape::table(points);
+  } catch (const Error& error) {
+    material.fail(kAbsorptionSpectrum, error.what());
+  }
+}
+
+void refuse_outside_full(const ConfigTable& config, const char* key) {
+  if (config.has(key)) config.fail(key, "found, but spectrum.mode is \"rgb3\"; allowed with \"full\" only");
+}
+
+Spectrum read_spectrum(const ConfigTable& config, const ConfigTable& material, const ConfigTable& grid,
+                       const Recipe& recipe) {
+  if (config.choice("mode", {"rgb3", "full"}, 0) == 0) {
+    for (const char* key : {"illuminant", "color_space"}) refuse_outside_full(config, key);
+    refuse_outside_full(material, kAbsorptionSpectrum);
+    return Spectrum();
+  }
+  const auto illuminant = config.choice("illuminant", {"D65", "E"}, 0) == 0 ? Illuminant::d65 : Illuminant::e;
+  const auto space =
+      config.choice("color_space", {"acescg", "rec709"}, 0) == 0 ? ColorSpace::acescg : ColorSpace::rec709;
+  return Spectrum(illuminant, space, longest_path(grid, material, recipe.grid, recipe.material),
+                  read_absorption_shape(material));
+}
+
+// Reads the albedo into spectrum and material.
+void read_albedo(const ConfigTable& config, Spectrum& spectrum, Material& material) {
+  constexpr const char* kAlbedo = "albedo";
+  if (config.is_list_of_lists(kAlbedo)) {
+    if (!spectrum.is_full()) refuse_outside_full(config, kAlbedo);
+    material.albedo = spectrum.set_albedo(config.curve(kAlbedo, kWavelengthNm, {0, 1}));
+    return;
+  }
+  material.albedo = spectrum.from_rec709(config.rgb(kAlbedo, {0, 1}, material.albedo));
+  if (!spectrum.is_full()) return;
+  try {
+    spectrum.set_albedo(material.albedo);
+  } catch (const Error& error) {
+    config.fail(kAlbedo, fmt::format("in {}: {}", to_string(spectrum.color_space()), error.what()));
+  }
+}
+
+// Enough for the material's rest: a factored one is smooth in azimuth, but must be right to 0.1 %; a dense
+// one pays for each, and so does path "product", for pairs of them.
+int default_azimuths(const Material& material) {
+  if (material.is_plain()) return 1;
+  if (material.roughness.is_isotropic()) return 9;
+  if (material.scatters() || material.has_multiple_facets()) return 8;
+  return material.absorption_path == AbsorptionPath::sum ? 16 : 12;
+}
+
+// Only the noisiest cells have it.
+double default_noise(double tolerance_median) { return std::min(tolerance_median, 0.005); }
+
+// As many as the material's rest needs: see recipe.h.
+int read_azimuths(const ConfigTable& config, const Material& material) {
+  constexpr const char* kAzimuths = "azimuths";
+  const bool isotropic = material.roughness.is_isotropic();
+  const int azimuths = config.integer(kAzimuths, 1, kMostDirectionNodes, default_azimuths(material));
+  if (!isotropic && azimuths % 4 != 0)
+    config.fail(kAzimuths,
+                fmt::format("found {}; allowed with an anisotropic roughness: a multiple of 4 up to {}",
+                            azimuths, kMostDirectionNodes));
+  if (!material.is_plain() && azimuths == 1)
+    config.fail(kAzimuths,
+                fmt::format("found 1, but the rest of a material with {} has azimuth; allowed: 2 to {}",
+                            material.scatters() ? "scattering_per_nm > 0" : "microfacet \"multiple\"",
+                            kMostDirectionNodes));
+  return azimuths;
+}
+
+}  // namespace
+
+Recipe parse_recipe(const std::string& text, const std::string& name,
+                    const std::vector<std::string>& overrides) {
+  const ConfigTable config = ConfigTable::parse(text, name, overrides);
+  Recipe recipe;
+  recipe.name = name;
+  const ConfigTable material = config.table("material"), grid = config.table("grid");
+  recipe.material = read_material(material);
+  recipe.grid = read_grid(grid, recipe.material);
+  recipe.spectrum = read_spectrum(config.table("spectrum"), material, grid, recipe);
+  read_albedo(material, recipe.spectrum, recipe.material);
+
+  const ConfigTable table = config.table("table");
+  recipe.table.angles = table.integer("angles", 2, kMostDirectionNodes, recipe.table.angles);
+  recipe.table.azimuths = read_azimuths(table, recipe.material);
+  recipe.table.precision = static_cast<Precision>(table.choice("precision", {"half", "float"}, 0));
+  recipe.table.encoding = static_cast<Encoding>(table.choice("encoding", {"auto", "dense", "factored"}, 0));
+  if (recipe.table.encoding == Encoding::factored && !has_factors(recipe.material))
+    table.fail("encoding",
+               fmt::format("found \"factored\", but the material has {}; allowed: \"auto\", \"dense\"",
+                           recipe.material.scatters() ? "scattering_per_nm > 0" : "microfacet \"multiple\""));
+
+  recipe.table.frame = static_cast<FrameKind>(table.choice("frame", {"closed", "none"}, 0));
+  if (recipe.table.frame == FrameKind::none && recipe.table.encoding != Encoding::dense)
+    table.fail("frame", "found \"none\"; allowed with encoding \"dense\" only");
+
+  recipe.table.values = static_cast<TableValues>(table.choice("values", {"auto", "walks"}, 0));
+
+  const ConfigTable accuracy = config.table("accuracy");
+  recipe.accuracy.tolerance_median =
+      accuracy.number("tolerance_median", {1e-6, 10}, recipe.accuracy.tolerance_median);
+  recipe.accuracy.tolerance_p99 = accuracy.number("tolerance_p99", {1e-6, 10}, recipe.accuracy.tolerance_p99);
+  recipe.accuracy.noise =
+      accuracy.number("noise", {1e-6, 1}, default_noise(recipe.accuracy.tolerance_median));
+  if (accuracy.choice("estimator", {"unidirectional", "bidirectional"}, 0) == 1)
+    recipe.accuracy.estimator = Estimator::bidirectional;
+
+  recipe.accuracy.interpolation = accuracy.number("interpolation", {0, 1}, 0);
+
+  const ConfigTable limits = config.table("limits");
+  recipe.limits.megabytes = limits.number("megabytes", {0.001, 1e6}, recipe.limits.megabytes);
+  recipe.limits.cpu_minutes = limits.number("cpu_minutes", {0.001, 1e6}, recipe.limits.cpu_minutes);
+
+  config.finish();
+  recipe.text = config.canonical_text();
+  recipe.hash = content_hash(recipe.text);
+  return recipe;
+}
+
+Recipe load_recipe(const std::string& path, const std::vector<std::string>& overrides) {
+  return parse_recipe(read_file(path), path, overrides);
+}
+
+}  // namespace sunbeam

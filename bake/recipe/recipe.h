@@ -1,0 +1,76 @@
+// A recipe: what to bake, over which grid, how finely and how accurately. TOML; keys as in docs/recipe.md.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bake/live/estimator.h"
+#include "bake/optics/spectrum.h"
+#include "sunbeam/detail/axis.h"
+#include "sunbeam/detail/nd_array.h"
+#include "sunbeam/material.h"
+#include "sunbeam/table.h"
+
+namespace sunbeam {
+
+// How a table holds the rest: sunbeam/table.h. automatic: the smallest whose measured error meets the
+// recipe's tolerances.
+enum class Encoding { automatic, dense, factored };
+
+constexpr const char* name_of(Encoding encoding) {
+  constexpr const char* kNames[] = {"auto", "dense", "factored"};
+  return kNames[static_cast<int>(encoding)];
+}
+
+// Where the nodes of a dense table come from. automatic: adding and doubling where it solves the material
+// (live/adding_doubling/slab_solver.h), else walks.
+enum class TableValues { automatic, walks };
+
+inline constexpr int kMostDirectionNodes = 512;  // of table.angles and table.azimuths
+
+struct Recipe {
+  Material
+      material;  // [material]: fixed values, and defaults of the grid's parameters; albedo as Spectrum has it
+  std::vector<Axis> grid;  // [grid]: the three parameter axes in table order; one node if not swept
+
+  struct {
+    int angles = 12;  // nodes over cos(theta), for wi and wo alike
+    // Dense: nodes over |dphi| in [0, pi]; 1 where the rest has no azimuth. Of an anisotropic film: nodes
+    // over phi_o in [0, 2 pi), a multiple of 4, and azimuths / 4 + 1 over phi_i in [0, pi/2].
+    int azimuths = 1;
+    Precision precision = Precision::half_float;
+    Encoding encoding = Encoding::automatic;
+    FrameKind frame = FrameKind::closed;  // dense only
+    TableValues values = TableValues::automatic;
+  } table;
+
+  struct {
+    // Relative standard error allowed of any tabulated value; unless given, tolerance_median, at most
+    // 0.005.
+    double noise = 0.005;
+    double tolerance_median = 0.01;  // of verify's error
+    double tolerance_p99 = 0.05;
+    Estimator estimator = Estimator::pfmc;  // or bidirectional
+    // Error allowed between nodes, which the plan (plan.h) refines until it holds; 0: nodes as they are.
+    double interpolation = 0;
+  } accuracy;
+
+  struct {
+    double megabytes = 64;    // of a table's arrays, uncompressed
+    double cpu_minutes = 30;  // of the bake, as BakeJob::cost estimates it
+  } limits;                   // of the plan
+
+  Spectrum spectrum;  // [spectrum], with albedo and absorption_spectrum of [material]
+
+  std::string name;  // file name, for messages
+  std::string text;  // canonical TOML with overrides applied
+  std::string hash;  // of `text`
+};
+
+// `overrides` are "section.key=value". Throws Error for anything unknown, missing or out of range.
+Recipe load_recipe(const std::string& path, const std::vector<std::string>& overrides = {});
+Recipe parse_recipe(const std::string& text, const std::string& name,
+                    const std::vector<std::string>& overrides = {});
+
+}  // namespace sunbeam

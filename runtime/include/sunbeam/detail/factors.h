@@ -1,0 +1,58 @@
+// The factored encoding of the rest: what walks have to find out about a film over a diffuse base without
+// scattering, once for all wavelengths.
+//
+// A film of thickness d at vacuum wavelength lambda acts by d / lambda alone, an absorbing pigment by its
+// optical depth tau there. So the arrays hold no colours and no thickness: one axis of fringe orders serves
+// every wavelength of every film. At each wavelength, with s = (n0/n2)^2 or 1 and kd the albedo of the base,
+//
+//   path "sum"      rest = s kd/pi A(wi) A(wo) / (1 - kd returned)                       (rank one, exactly)
+//   path "product"  rest = s kd/pi A(wi) A(wo) [ exp(tau (1/m_i + 1/m_o - 1/(m_i m_o))) + exchange ]
+//
+// A(w) = the share of the power along w that reaches the base through film and pigment,
+//        smooth film: A = T(c) exp(-tau/m), closed form,   c cosine of w, m cosine below the film,
+//        rough film:  A = exp(arrival - tau/m~),           m~ = m kept away from 0 by the roughness (but m
+//                                                          itself where light passes straight on);
+// returned = the share of what leaves the base that the film sends back to it through the pigment.
+// The first term of "product" is one visit of the base through facets that do not bend light, exactly there.
+// Colours are rest = sum_k weight_k rest_k. Derivation: docs/table_format.md.
+//
+// fringe_order = 2 n1 d cos_1 / lambda, the phase between successive reflections in the film over 2 pi, at
+// the direction itself for `arrival`, at normal incidence for the other two. At a fixed order A varies slowly
+// with the direction.
+#pragma once
+
+#include <vector>
+
+#include "sunbeam/detail/axis.h"
+#include "sunbeam/detail/nd_array.h"
+#include "sunbeam/detail/wavelengths.h"
+#include "sunbeam/material.h"
+
+namespace sunbeam {
+
+// One number a cell. Directions are (cos_theta, phi), phi in [0, pi/2] for an anisotropic film and the one
+// node 0 for an isotropic one.
+struct Factors {
+  std::vector<Axis> grid;   // the parameters as the recipe spans them, in the order of kParameterNames
+  Wavelengths wavelengths;  // albedo of the base and relative absorption at each, and their colours
+
+  NdArray arrival;   // (base_ior, optical_depth, fringe_order, cos_theta, phi); empty for a smooth film;
+                     // one optical depth where it does not matter (straight)
+  NdArray returned;  // path "sum":     (base_ior, optical_depth, fringe_order)
+  NdArray exchange;  // path "product": (base_ior, optical_depth, albedo, fringe_order, cos_theta_i, phi_i,
+                     //                  cos_theta_o, phi_o)
+
+  bool empty() const { return returned.empty() && exchange.empty(); }
+  bool operator==(const Factors&) const = default;
+};
+
+// Of a direction at cosine c outside, for a film of one nm at a wavelength of one nm.
+double fringe_order(const Material& material, double cosine);
+
+// m~: see above.
+double arrival_cosine(const Material& material, double cosine);
+
+// exp(tau (1/m_i + 1/m_o - 1/(m_i m_o))), at most exp(tau).
+double one_visit_of_product(double optical_depth, double m_i, double m_o);
+
+}  // namespace sunbeam

@@ -1,0 +1,75 @@
+// A dense array of colours or of single numbers over named axes, with interpolation along each: the one
+// in-memory form of everything a table holds.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sunbeam/core/vec.h"
+#include "sunbeam/detail/axis.h"
+
+namespace sunbeam {
+
+enum class Precision { half_float, single_float };
+
+// How values are rounded on disk; in memory they are floats that already have that rounding.
+float round_to(Precision precision, double value);
+
+class NdArray {
+ public:
+  static constexpr std::size_t kMaxRank = 8;
+
+  NdArray() = default;
+  // All zero. Throws Error if an axis is unsound, there are none or too many, or the array is too large.
+  // `channels` is 3 (colours) or 1.
+  NdArray(std::string name, std::vector<Axis> axes, Precision precision, std::size_t channels = 3);
+
+  // The same array without its values, which are kept elsewhere: values() is empty, and get() must not be
+  // called.
+  static NdArray outline(std::string name, std::vector<Axis> axes, Precision precision,
+                         std::size_t channels = 3);
+  bool is_outline() const { return cells_ > 0 && values_.empty(); }
+
+  const std::string& name() const { return name_; }
+  const std::vector<Axis>& axes() const { return axes_; }
+  Precision precision() const { return precision_; }
+  std::size_t channels() const { return channels_; }
+  std::size_t cells() const { return cells_; }  // colours or numbers
+  bool empty() const { return cells_ == 0; }
+
+  // Distance in cells between neighbours along axis k: row-major, the last axis runs fastest.
+  std::size_t stride(std::size_t k) const { return strides_[k]; }
+
+  // Values, channels() a cell.
+  std::span<const float> values() const { return values_; }
+  std::span<float> values() { return values_; }
+  // A single number is the same in every channel.
+  Rgb get(std::size_t cell) const {
+    if (channels_ == 1) return Rgb(values_[cell]);
+    return {values_[3 * cell], values_[3 * cell + 1], values_[3 * cell + 2]};
+  }
+  // Rounds to the precision of the array; -0 becomes 0 so that every file form keeps it. Of a single number
+  // it takes the first channel.
+  void set(std::size_t cell, const Rgb& value);
+
+  // At x (one number an axis), clamped to the axes.
+  Rgb interpolate(std::span<const double> x) const;
+
+  // The array over the trailing axes with the leading ones fixed at x.
+  NdArray slice(std::span<const double> x) const;
+
+  bool operator==(const NdArray&) const = default;
+
+ private:
+  std::string name_;
+  std::vector<Axis> axes_;
+  Precision precision_ = Precision::single_float;
+  std::size_t channels_ = 3;
+  std::array<std::size_t, kMaxRank> strides_{};
+  std::size_t cells_ = 0;
+  std::vector<float> values_;
+};
+
+}  // namespace sunbeam

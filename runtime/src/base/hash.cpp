@@ -1,0 +1,35 @@
+#include "sunbeam/detail/hash.h"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <cstdio>
+
+namespace sunbeam {
+namespace {
+
+std::string digits(const XXH128_hash_t& hash) {
+  char text[33];
+  std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(hash.high64),
+                static_cast<unsigned long long>(hash.low64));
+  return text;
+}
+
+}  // namespace
+
+std::string content_hash(std::string_view bytes) { return digits(XXH3_128bits(bytes.data(), bytes.size())); }
+
+struct ContentHash::State {
+  XXH3_state_t stream;
+};
+
+ContentHash::ContentHash() : state_(std::make_unique<State>()) { XXH3_128bits_reset(&state_->stream); }
+ContentHash::~ContentHash() = default;
+
+void ContentHash::add(std::string_view bytes) {
+  XXH3_128bits_update(&state_->stream, bytes.data(), bytes.size());
+}
+
+std::string ContentHash::text() const { return digits(XXH3_128bits_digest(&state_->stream)); }
+
+}  // namespace sunbeam

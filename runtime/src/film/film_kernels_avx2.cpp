@@ -1,0 +1,7 @@
+#include "runtime/src/film/make_film_kernels.h"
+
+namespace sunbeam {
+
+const FilmKernels kAvx2FilmKernels = film_kernels<Floats8>("avx2");
+
+}  // namespace sunbeam

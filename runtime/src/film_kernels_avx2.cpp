@@ -1,7 +1,0 @@
-#include "make_film_kernels.h"
-
-namespace sunbeam {
-
-const FilmKernels kAvx2FilmKernels = film_kernels<Floats8>("avx2");
-
-}  // namespace sunbeam

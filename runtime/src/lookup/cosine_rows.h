@@ -1,0 +1,58 @@
+// What sample() draws the rest from: for each viewer a density over the root of cos(theta_i), linear between
+// even nodes, uniform in azimuth. Rows for viewers at even roots of cos(theta_o); between two of them one is
+// chosen by lot, and the density is their mixture.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "runtime/src/base/alias_table.h"
+#include "runtime/src/lookup/facets.h"
+
+namespace sunbeam {
+
+class RestSampler {
+ public:
+  static constexpr int kNodes = 33;  // of lights
+
+  // Root of the cosine of a node.
+  static double root_of_node(int node) { return static_cast<double>(node) / kIntervals; }
+
+  // In order of viewers. `density` at each node over the root, in any unit, >= 0; returns its integral.
+  double add_row(std::span<const double> density) {
+    std::array<double, kIntervals> power;
+    for (std::size_t k = 0; k < kIntervals; ++k) power[k] = density[k] + density[k + 1];
+    rows_.emplace_back(power);
+    double total = 0;
+    for (const double p : power) total += p / (2 * kIntervals);
+    for (const double d : density) density_.push_back(static_cast<float>(total > 0 ? d / total : 1));
+    return total;
+  }
+
+  // Over the root, of a viewer among the rows and a light among the nodes.
+  float density(const EvenPosition& viewer, const EvenPosition& light) const {
+    const float* row = density_.data() + viewer.lower * kNodes;
+    const float low = lerp(row, light), high = lerp(row + kNodes, light);
+    return low + viewer.upper_weight * (high - low);
+  }
+
+  // Root of cos(theta_i), > 0.
+  float sample(int viewer, Rng& rng) const {
+    const std::size_t k = rows_[static_cast<std::size_t>(viewer)].draw(rng.next());
+    const float* ends = density_.data() + static_cast<std::size_t>(viewer) * kNodes + k;
+    // The greater of two uniform numbers has a density that rises from 0, the lesser one that falls to it.
+    const float a = 1 - uniform_float(rng), b = 1 - uniform_float(rng);
+    const float rises = uniform_float(rng) * (ends[0] + ends[1]) < ends[1];
+    const float inside = std::min(a, b) + rises * std::abs(a - b);
+    return (static_cast<float>(k) + inside) * (1.0f / kIntervals);
+  }
+
+ private:
+  static constexpr int kIntervals = kNodes - 1;
+
+  std::vector<AliasTable<kIntervals>> rows_;
+  std::vector<float> density_;
+};
+
+}  // namespace sunbeam

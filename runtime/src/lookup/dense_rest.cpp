@@ -1,0 +1,88 @@
+#include "runtime/src/lookup/dense_rest.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr std::size_t kCurveNodes = 1025;  // linear between: towards grazing T is curved
+
+// Shares of the nodes in the mean over the axis: two Gauss points an interval are exact for cubics.
+std::vector<double> mean_weights(const Axis& axis) {
+  const std::size_t n = axis.size();
+  if (n == 1) return {1};
+  const double gauss = 0.5 / std::sqrt(3.0);
+  std::vector<double> weights(n);
+  for (std::size_t k = 0; k + 1 < n; ++k)
+    for (const double t : {0.5 - gauss, 0.5 + gauss}) {
+      const Stencil at = axis.stencil(lerp(t, axis.nodes[k], axis.nodes[k + 1]));
+      const double share = (axis.nodes[k + 1] - axis.nodes[k]) / (2 * (axis.nodes.back() - axis.nodes[0]));
+      for (std::size_t j = 0; j < at.count; ++j) weights[at.node[j]] += share * at.weight[j];
+    }
+  return weights;
+}
+
+}  // namespace
+
+DenseRest::DenseRest(const Table& table, const Material& material)
+    : symmetry_(table.symmetry), is_full_(table.is_full_spectrum()) {
+  const auto point = Parameters::of(material).values();
+  const NdArray sliced = table.remainder.slice(point);
+  stderr_ = table.rest_stderr.slice(point);
+  angles_.emplace(sliced, symmetry_);
+  for (std::size_t cell = 0; cell < sliced.cells(); ++cell) remainder_.push_back(to_color4(sliced.get(cell)));
+  if (table.frame == FrameKind::none) return;
+  frame_.emplace(material, table.first_visit);
+  const bool reflects = table.film_transmittance.empty();
+  const NdArray film =
+      (reflects ? table.film_reflectance : table.film_transmittance).slice(std::span(point).first(2));
+  for (std::size_t i = 0; i < kCurveNodes; ++i) {
+    const Rgb value = film.interpolate(std::array{static_cast<double>(i) / (kCurveNodes - 1)});
+    transmittance_.push_back(reflects ? Rgb(1) - value : value);
+  }
+}
+
+Rgb DenseRest::transmittance(double cosine) const {
+  const Bracket at = even_bracket(cosine, kCurveNodes);
+  return (1 - at.upper_weight) * transmittance_[at.lower] + at.upper_weight * transmittance_[at.upper];
+}
+
+Rgb DenseRest::decoded(const Rgb& remainder, double cos_i, double cos_o) const {
+  if (frame_) return frame_->decode(remainder, cos_i, cos_o, transmittance(cos_i), transmittance(cos_o));
+  if (is_full_) return remainder;
+  return transform(remainder, [](double x) { return std::max(0.0, x); });
+}
+
+Rgb DenseRest::operator()(const Vec3& wo, const Vec3& wi) const {
+  return decoded(remainder(angles_->coordinates(wo, wi)), wi.z, wo.z);
+}
+
+Rgb DenseRest::standard_error(const Vec3& wo, const Vec3& wi) const {
+  const AngleCoordinates c = angles_->coordinates(wo, wi);
+  const Rgb error = stderr_.interpolate(std::array{c.cos_i, c.phi_i, c.cos_o, c.phi_o});
+  return transform(error, [](double x) { return std::max(0.0, x); });
+}
+
+// Azimuths of an isotropic table are those of wi from wo; those of an anisotropic one are of a quadrant, and
+// wo mirrored stands for wi in the other three.
+DenseRest::AzimuthMean::AzimuthMean(const DenseRest& rest, const Vec3& wo) : rest_(rest), cos_o_(wo.z) {
+  const bool isotropic = rest.symmetry_ == Symmetry::isotropic;
+  const Axis& axis = rest.angles_->axis(isotropic ? 3 : 1);
+  const auto weights = mean_weights(axis);
+  for (std::size_t k = 0; k < axis.size(); ++k) {
+    if (isotropic) {
+      nodes_.push_back({0, axis.nodes[k], weights[k]});
+      continue;
+    }
+    for (const double x : {wo.x, -wo.x})
+      for (const double y : {wo.y, -wo.y})
+        nodes_.push_back({axis.nodes[k], azimuth({x, y, wo.z}), weights[k] / 4});
+  }
+}
+
+Rgb DenseRest::AzimuthMean::operator()(double cos_i) const {
+  Rgb remainder;
+  for (const Node& node : nodes_)
+    remainder += node.weight * rest_.remainder({cos_i, node.phi_i, cos_o_, node.phi_o});
+  return rest_.decoded(remainder, cos_i, cos_o_);
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,94 @@
+// What sample() draws the first surface of an isotropic rough film from: visible normals (facets.h), drawn
+// from the unit square not evenly but in proportion to what the film reflects there and the facets let out.
+// Cells of the square, for viewers at even roots of the cosine; between two of them one is chosen by lot, and
+// the density is their mixture.
+//
+// The square is (azimuth of the mirrored cap about the viewer's over 2 pi, height in the cap). Both halves of
+// the azimuth are mirror images.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "runtime/src/base/alias_table.h"
+#include "runtime/src/lookup/facets.h"
+
+namespace sunbeam {
+
+class FirstSampler {
+ public:
+  static constexpr int kRows = 17;
+  static constexpr int kTurns = 16, kHeights = 32, kCells = kTurns * kHeights;
+  static_assert(2 * kTurns == FloatTurn::kSteps);
+
+  FirstSampler() : density_(kCells * kStride) {}
+
+  // Of cells, turn by turn; any unit, >= 0. In the order of viewers.
+  void add_row(std::span<const double> power) {
+    rows_.emplace_back(power);
+    const auto densities = rows_.back().densities();
+    for (std::size_t cell = 0; cell < kCells; ++cell)
+      density_[cell * kStride + rows_.size() - 1] = static_cast<float>(densities[cell]);
+  }
+
+  // In the square.
+  struct Point {
+    FloatTurn turn;
+    float height;
+  };
+  static Point even(Rng& rng) {
+    const FloatTurn turn(rng);
+    return {turn, uniform_float(rng)};
+  }
+  Point sample(int row, Rng& rng) const {
+    const std::uint32_t cell = rows_[static_cast<std::size_t>(row)].draw(rng.next());
+    const std::uint32_t random = rng.next();  // its highest bit chooses the cell or its mirror image
+    const std::uint32_t turn = (cell / kHeights) ^ ((random >> 31) * (2 * kTurns - 1));
+    const float inside = static_cast<float>((random << 1) >> 8) * 0x1p-24f;
+    return {FloatTurn(turn, inside),
+            (static_cast<float>(cell % kHeights) + uniform_float(rng)) * (1.0f / kHeights)};
+  }
+
+  // The cells that the normals along h fall into. Stretched to roughness 1 and times r (facets.h),
+  // with h' = (h.x, h.y, a h.z) the mirrored wo is m = e h' - wo', e = a l^2 / |h'|^2; its height is that of
+  // m.z, and its azimuth has the cosine m.wo' / (|m| |wo'|) in the plane.
+  template <int kLights>
+  static Ints4 cells(float alpha, const FacetViewer& o, const FacetLights<kLights>& lights) {
+    const Color4 e = alpha * alpha * alpha * lights.l2_per_q;
+    const Color4 z = e * alpha * lights.z - o.cosine, below_top = o.r - z;
+    const Color4 along = e * (lights.x * o.x + lights.y * o.y) - alpha * o.sine2;
+    const Ints4 turn = turn_at(along, below_top * (o.r + z) * o.sine2);
+    const Color4 level = below_top * (2 * kHeights * o.pdf_per_d);
+    const Color4 last = Color4{1, 1, 1, 1} * float{kHeights - 1};
+    return turn * kHeights + convert<Ints4>(max4(min4(level, last), Color4{}));
+  }
+
+  // Over the square.
+  float density(const EvenPosition& row, int cell) const {
+    const float* viewers = density_.data() + static_cast<std::size_t>(cell) * kStride + row.lower;
+    return viewers[0] + row.upper_weight * (viewers[1] - viewers[0]);
+  }
+
+ private:
+  static constexpr std::size_t kStride = kRows + 1;
+
+  // The half turn's cosine is x / sqrt(length2); one of its quarters is the other's mirror image.
+  static Ints4 turn_at(const Color4& x, const Color4& length2) {
+    Ints4 turn{};
+    for (const float edge : kEdges) turn -= x * x < edge * length2;
+    return turn ^ ((x < 0) & (kTurns - 1));
+  }
+  static const std::array<float, kTurns / 2 - 1> kEdges;  // squared cosine at pi k / kTurns, k = 1, 2 ...
+
+  std::vector<AliasTable<kCells>> rows_;
+  std::vector<float> density_;  // (cell, viewer), so that both viewers are neighbours
+};
+
+inline const std::array<float, FirstSampler::kTurns / 2 - 1> FirstSampler::kEdges = [] {
+  std::array<float, kTurns / 2 - 1> edges;
+  for (std::size_t k = 0; k < edges.size(); ++k)
+    edges[k] = static_cast<float>(square(std::cos(kPi * static_cast<double>(k + 1) / kTurns)));
+  return edges;
+}();
+
+}  // namespace sunbeam

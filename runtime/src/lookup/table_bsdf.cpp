@@ -1,0 +1,80 @@
+#include "sunbeam/table_bsdf.h"
+
+#include "runtime/src/lookup/bound_table.h"
+#include "sunbeam/core/error.h"
+#include "sunbeam/detail/text.h"
+
+namespace sunbeam {
+namespace {
+
+Parameters checked(const Table& table, const Parameters& parameters, OutsideGrid outside) {
+  auto values = parameters.values();
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const Axis& axis = table.parameter_axis(k);
+    const double inside = std::clamp(values[k], axis.low(), axis.high());
+    if (inside != values[k] && outside == OutsideGrid::refuse)
+      throw Error("key '" + axis.name + "': found " + to_text(values[k]) + "; the table holds " +
+                  to_text(axis.low()) + " to " + to_text(axis.high()));
+    values[k] = inside;
+  }
+  return {values[0], values[1], values[2]};
+}
+
+}  // namespace
+
+TableBsdf::TableBsdf(const Table& table, const Parameters& parameters, OutsideGrid outside,
+                     Arithmetic arithmetic)
+    : bound_(std::make_shared<BoundTable>(
+          table, checked(table, parameters, outside).applied_to(table.material), arithmetic)) {}
+
+TableBsdf Table::bind(const Parameters& parameters, OutsideGrid outside) const {
+  return TableBsdf(*this, parameters, outside);
+}
+
+const Material& TableBsdf::material() const { return bound_->material(); }
+
+Rgb TableBsdf::film_reflectance(double cosine) const { return bound_->film_reflectance(cosine); }
+
+Rgb TableBsdf::dirac(const Vec3& wo) const {
+  return bound_->is_smooth() && wo.z > 0 ? bound_->film_reflectance(wo.z) : Rgb();
+}
+
+void TableBsdf::eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f) const {
+  if (wo.z > 0) return bound_->eval(wo, wi, f);
+  std::fill_n(f.begin(), wi.size(), Rgb());
+}
+
+Rgb TableBsdf::first(const Vec3& wo, const Vec3& wi) const {
+  if (wo.z <= 0 || wi.z <= 0) return {};
+  return to_rgb(bound_->parts(wo, wi).first);
+}
+
+Rgb TableBsdf::rest(const Vec3& wo, const Vec3& wi) const {
+  if (wo.z <= 0 || wi.z <= 0) return {};
+  return bound_->rest(wo, wi);
+}
+
+Rgb TableBsdf::rest_stderr(const Vec3& wo, const Vec3& wi) const {
+  if (wo.z <= 0 || wi.z <= 0) return {};
+  return bound_->rest_stderr(wo, wi);
+}
+
+Rgb TableBsdf::albedo(const Vec3& wo) const { return bound_->albedo(wo); }
+
+EvalPdf TableBsdf::eval_pdf(const Vec3& wo, const Vec3& wi) const {
+  if (wo.z <= 0 || wi.z <= 0) return {};
+  return bound_->eval_pdf(wo, wi);
+}
+
+EvalAndSample TableBsdf::eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const {
+  if (wo.z <= 0) return {};
+  if (wi.z <= 0) return {{}, bound_->sample(wo, rng)};
+  return bound_->eval_and_sample(wo, wi, rng);
+}
+
+std::optional<BsdfSample> TableBsdf::sample(const Vec3& wo, Rng& rng) const {
+  if (wo.z <= 0) return {};
+  return bound_->sample(wo, rng);
+}
+
+}  // namespace sunbeam

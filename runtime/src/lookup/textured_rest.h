@@ -1,0 +1,131 @@
+// The rest of a factored table over all its parameters: the arrays L and X of textured_table.h.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "runtime/src/base/exp4.h"
+#include "runtime/src/film/film_spectrum.h"
+#include "runtime/src/lookup/textured_grid.h"
+#include "sunbeam/detail/textured_point.h"
+
+namespace sunbeam {
+
+class TexturedRest {
+ public:
+  explicit TexturedRest(const Table& table);
+
+  // Isotropic and of path "sum": L says all, whatever the azimuth.
+  bool is_plain() const { return grid_.phis == 1 && pairs_.empty(); }
+  bool is_product() const { return !pairs_.empty(); }
+
+  TexturedPlace place(const Parameters& at) const;
+
+  // A direction among the nodes.
+  struct Direction {
+    EvenPosition path, cosine;
+  };
+  // `path` is the root of TexturedMaterial::path_squared, `root` that of the cosine.
+  Direction direction(const TexturedPlace& place, float path, float root) const {
+    const float x = (place.thickness_nm * path - grid_.first_path) * grid_.per_extent;
+    return {{std::max(x, 0.0f), grid_.paths}, {root, TexturedGrid::kCosines}};
+  }
+
+  // L; the last lane is the chance of sampling the first surface, interpolated too.
+  Color4 at(const TexturedPlace& place, const Direction& w) const {
+    const Color4* first = nodes_.data() + place.row + w.path.lower * stride_ + w.cosine.lower;
+    const Color4* second = first + stride_;
+    Color4 low[2]{}, high[2]{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Color4 weight = place.weight[k] + Color4{};
+      low[0] += weight * first[corner_[k]];
+      high[0] += weight * first[corner_[k] + 1];
+      low[1] += weight * second[corner_[k]];
+      high[1] += weight * second[corner_[k] + 1];
+    }
+    for (int k = 0; k < 2; ++k) low[k] += w.cosine.upper_weight * (high[k] - low[k]);
+    return low[0] + w.path.upper_weight * (low[1] - low[0]);
+  }
+
+  // The same of an anisotropic film; `phi` is the azimuth folded into a quadrant, over pi/2.
+  Color4 at(const TexturedPlace& place, const Direction& w, float phi) const {
+    if (grid_.phis == 1) return at(place, w);
+    const EvenPosition azimuth(phi, grid_.phis);
+    TexturedPlace lower = place, upper = place;
+    lower.row += static_cast<std::size_t>(azimuth.lower * TexturedGrid::kCosines);
+    upper.row = lower.row + TexturedGrid::kCosines;
+    const Color4 low = at(lower, w);
+    return low + azimuth.upper_weight * (at(upper, w) - low);
+  }
+
+  // X of two directions, each the root of its cosine and phi as above.
+  struct PairEnd {
+    float root, phi;
+  };
+  Color4 exchange(const Parameters& at, const PairEnd& o, const PairEnd& i) const;
+
+  // The chance of sampling the first surface, from the nearest parameters: they are given, and so the choice
+  // need not change smoothly with them.
+  float first_chance(const TexturedPlace& place, const Direction& w) const {
+    const int path = w.path.lower + (w.path.upper_weight < 0.5f ? 0 : 1);
+    const Color4* row = nodes_.data() + place.nearest + path * stride_ + w.cosine.lower;
+    return row[0][3] + w.cosine.upper_weight * (row[1][3] - row[0][3]);
+  }
+
+  // Asks for what at() will read, to work meanwhile.
+  void prefetch(const TexturedPlace& place, const Direction& w) const {
+    const Color4* first = nodes_.data() + place.row + w.path.lower * stride_ + w.cosine.lower;
+    for (const int corner : corner_) {
+      sunbeam::prefetch(first + corner);
+      sunbeam::prefetch(first + corner + stride_);
+    }
+  }
+
+  // The film's transmittance folded, from its reflectance; kept above 0.
+  Color4 passing(const FloatRgb& reflectance) const {
+    const Color4 all{total_.r - reflectance.r, total_.g - reflectance.g, total_.b - reflectance.b, 0};
+    return select(all > kLeastPassing, all, Color4{} + kLeastPassing);
+  }
+
+  const FilmSpectrum& film() const { return film_; }
+  const Color4& absorption() const { return absorption_; }
+  const TexturedGrid& grid() const { return grid_; }
+  const EvenAxis& axis(std::size_t k) const { return grid_.axes[k]; }
+  std::size_t bytes() const { return (nodes_.size() + pairs_.size()) * sizeof(Color4); }
+
+ private:
+  static constexpr float kLeastPassing = 1e-4f;
+
+  // Neighbours of a direction among those of pairs_, and their weights.
+  struct PairTaps {
+    std::array<int, 4> node;
+    std::array<float, 4> weight;
+    int count;
+  };
+  PairTaps taps(const PairEnd& end) const;
+
+  void find_nodes(const Table& table);
+
+  // At the first path and cosine.
+  std::size_t row(int base_ior, int absorption) const {
+    return static_cast<std::size_t>((base_ior * grid_.axes[2].size() + absorption) * grid_.columns());
+  }
+  // Of X at a node of the parameters.
+  std::size_t first_pair(int thickness, int base_ior, int absorption) const {
+    const int node = (thickness * grid_.axes[1].size() + base_ior) * grid_.axes[2].size() + absorption;
+    return static_cast<std::size_t>(node) * static_cast<std::size_t>(grid_.pair_ends() * grid_.pair_ends());
+  }
+
+  TexturedGrid grid_;
+  FilmSpectrum film_;
+  int stride_;                 // from path to path, in nodes
+  std::array<int, 4> corner_;  // distance of a place's rows from the first
+  FloatRgb total_;             // the fold of 1
+  Color4 absorption_;          // a of each channel, and their mean
+  std::vector<Color4> nodes_;  // (path, base_ior, absorption_per_nm, phi, root of the cosine)
+  // Path "product" only: (film_thickness_nm, base_ior, absorption_per_nm, direction, direction), directions
+  // as (phi, root of the cosine).
+  std::vector<Color4> pairs_;
+};
+
+}  // namespace sunbeam

@@ -1,0 +1,86 @@
+#include "sunbeam/detail/nd_array.h"
+
+#include <half.h>
+
+#include <utility>
+
+#include "sunbeam/core/error.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr std::size_t kMaxCells = std::size_t{1} << 32;
+
+// Calls visit(offset, weight) for every cell that a value at x is made of; exact hits have few.
+template <class F>
+void visit_cells(const NdArray& array, std::span<const double> x, std::size_t axis, std::size_t offset,
+                 double weight, F& visit) {
+  if (axis == x.size()) return visit(offset, weight);
+  const Stencil at = array.axes()[axis].stencil(x[axis]);
+  for (std::size_t k = 0; k < at.count; ++k)
+    visit_cells(array, x, axis + 1, offset + at.node[k] * array.stride(axis), weight * at.weight[k], visit);
+}
+
+}  // namespace
+
+float round_to(Precision precision, double value) {
+  const auto single = static_cast<float>(value);
+  const float rounded = precision == Precision::half_float ? static_cast<float>(Imath::half(single)) : single;
+  return rounded + 0.0f;  // -0 becomes 0
+}
+
+NdArray NdArray::outline(std::string name, std::vector<Axis> axes, Precision precision,
+                         std::size_t channels) {
+  NdArray array;
+  array.name_ = std::move(name);
+  array.axes_ = std::move(axes);
+  array.precision_ = precision;
+  array.channels_ = channels;
+  array.cells_ = 1;
+  if (array.axes_.empty() || array.axes_.size() > kMaxRank)
+    throw Error("array '" + array.name_ + "': has " + std::to_string(array.axes_.size()) +
+                " axes; allowed: 1 to 8");
+  for (std::size_t k = array.axes_.size(); k-- > 0;) {
+    const Axis& axis = array.axes_[k];
+    const std::string defect = axis.defect();
+    if (!defect.empty()) throw Error("array '" + array.name_ + "': axis '" + axis.name + "' " + defect);
+    array.strides_[k] = array.cells_;
+    if (axis.size() > kMaxCells / array.cells_)
+      throw Error("array '" + array.name_ + "': has more than 2^32 cells");
+    array.cells_ *= axis.size();
+  }
+  return array;
+}
+
+NdArray::NdArray(std::string name, std::vector<Axis> axes, Precision precision, std::size_t channels)
+    : NdArray(outline(std::move(name), std::move(axes), precision, channels)) {
+  values_.resize(channels_ * cells_);
+}
+
+void NdArray::set(std::size_t cell, const Rgb& value) {
+  for (std::size_t c = 0; c < channels_; ++c)
+    values_[channels_ * cell + c] = round_to(precision_, value[static_cast<int>(c)]);
+}
+
+Rgb NdArray::interpolate(std::span<const double> x) const {
+  Rgb sum;
+  auto add = [&](std::size_t offset, double weight) { sum += weight * get(offset); };
+  visit_cells(*this, x, 0, 0, 1, add);
+  return sum;
+}
+
+NdArray NdArray::slice(std::span<const double> x) const {
+  NdArray result(name_, {axes_.begin() + static_cast<std::ptrdiff_t>(x.size()), axes_.end()},
+                 Precision::single_float, channels_);
+  std::vector<double> sums(result.values_.size());
+  auto add = [&](std::size_t offset, double weight) {
+    const float* from = values_.data() + channels_ * offset;
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += weight * static_cast<double>(from[k]);
+  };
+  visit_cells(*this, x, 0, 0, 1, add);
+  for (std::size_t k = 0; k < sums.size(); ++k)
+    result.values_[k] = round_to(Precision::single_float, sums[k]);
+  return result;
+}
+
+}  // namespace sunbeam

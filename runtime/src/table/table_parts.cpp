@@ -1,0 +1,420 @@
+#include "runtime/src/table/table_parts.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "sunbeam/core/error.h"
+#include "sunbeam/detail/hash.h"
+#include "sunbeam/detail/text.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr std::array<const char*, 3> kFilmAxes = {"film_thickness_nm", "base_ior", "cos_theta"};
+constexpr std::array<const char*, 1> kFirstVisitAxes = {"optical_path"};
+constexpr std::array<const char*, 7> kRestAxes = {
+    "film_thickness_nm", "base_ior", "absorption_per_nm", "cos_theta_i", "phi_i", "cos_theta_o", "phi_o"};
+constexpr std::array<const char*, 5> kArrivalAxes = {"base_ior", "optical_depth", "fringe_order", "cos_theta",
+                                                     "phi"};
+constexpr std::array<const char*, 3> kReturnedAxes = {"base_ior", "optical_depth", "fringe_order"};
+constexpr std::array<const char*, 8> kExchangeAxes = {
+    "base_ior", "optical_depth", "albedo", "fringe_order", "cos_theta_i", "phi_i", "cos_theta_o", "phi_o"};
+constexpr std::array<const char*, 8> kRequiredInfo = {"recipe",    "recipe_hash", "seed",         "samples",
+                                                      "estimator", "spectrum",    "tool_version", "encoding"};
+
+std::string name_of(Symmetry symmetry) {
+  return symmetry == Symmetry::isotropic ? "isotropic" : "anisotropic";
+}
+
+// Hash over everything a file holds, so that damage shows.
+std::string parts_hash(const TableParts& parts, const DenseCells* cells = nullptr) {
+  std::string digest;
+  for (const auto& [key, value] : parts.attributes)
+    if (key != "content_hash") digest += key + "=" + value + "\n";
+  for (const auto& array : parts.arrays) {
+    if (array.channels() == 1) digest += "numbers ";
+    digest += array.name() + (array.precision() == Precision::half_float ? " half\n" : " float\n");
+    for (const auto& [key, value] : describe_axes(array.axes())) digest += key + "=" + value + "\n";
+    ContentHash hash;
+    visit_values(array, cells, [&](std::size_t, std::span<const float> values) {
+      hash.add({reinterpret_cast<const char*>(values.data()), values.size_bytes()});
+    });
+    digest += hash.text() + "\n";
+  }
+  return content_hash(digest);
+}
+
+const std::string& require(const Attributes& attributes, std::string_view key) {
+  const auto at = attributes.find(std::string(key));
+  if (at == attributes.end()) throw Error("attribute '" + std::string(key) + "' is missing");
+  return at->second;
+}
+
+const NdArray* find(const TableParts& parts, const std::string& name) {
+  const auto at =
+      std::find_if(parts.arrays.begin(), parts.arrays.end(), [&](const auto& a) { return a.name() == name; });
+  return at == parts.arrays.end() ? nullptr : &*at;
+}
+
+std::string inventory(const TableParts& parts) {
+  std::string list;
+  for (const auto& array : parts.arrays) list += (list.empty() ? "" : ", ") + array.name();
+  return list.empty() ? "no array" : list;
+}
+
+void require_finite(const NdArray& array, const DenseCells* cells = nullptr) {
+  visit_values(array, cells, [&](std::size_t, std::span<const float> values) {
+    for (const float value : values)
+      if (!std::isfinite(value)) throw Error("array '" + array.name() + "' holds a value that is not finite");
+  });
+}
+
+template <std::size_t N>
+NdArray checked_array(const TableParts& parts, const std::string& name,
+                      const std::array<const char*, N>& axis_names, std::size_t channels = 3) {
+  const NdArray* array = find(parts, name);
+  if (!array) throw Error("array '" + name + "' is missing (the file holds: " + inventory(parts) + ")");
+  if (array->axes().size() != N)
+    throw Error("array '" + name + "' has " + std::to_string(array->axes().size()) + " axes; expected " +
+                std::to_string(N));
+  for (std::size_t k = 0; k < N; ++k)
+    if (array->axes()[k].name != axis_names[k])
+      throw Error("array '" + name + "': axis " + std::to_string(k) + " is '" + array->axes()[k].name +
+                  "'; expected '" + axis_names[k] + "'");
+  if (array->channels() != channels)
+    throw Error("array '" + name + "' holds " +
+                (channels == 1 ? "colours; expected numbers" : "numbers; expected colours"));
+  require_finite(*array);
+  return *array;
+}
+
+void check_axis_range(const Axis& axis, double low, double high) {
+  if (axis.nodes.front() < low || axis.nodes.back() > high)
+    throw Error("axis '" + axis.name + "' leaves " + to_text(low) + " to " + to_text(high));
+}
+
+void check_period(const Axis& axis, double period) {
+  if (axis.period != period)
+    throw Error("axis '" + axis.name + "' has period " + to_text(axis.period) + "; expected " +
+                to_text(period));
+}
+
+// Look-ups at azimuths beyond the nodes would be clamped, hence the ends.
+void check_ends(const Axis& axis, double low, double high) {
+  if (axis.nodes.front() != low || axis.nodes.back() != high)
+    throw Error("axis '" + axis.name + "' runs from " + to_text(axis.nodes.front()) + " to " +
+                to_text(axis.nodes.back()) + "; expected " + to_text(low) + " to " + to_text(high));
+}
+
+void check_azimuths(Symmetry symmetry, const Axis& phi_i, const Axis& phi_o) {
+  check_period(phi_i, 0);
+  if (symmetry == Symmetry::isotropic) {
+    if (phi_i.size() != 1)
+      throw Error("axis 'phi_i' has " + std::to_string(phi_i.size()) + " nodes; an isotropic table has 1");
+    check_period(phi_o, 0);
+    check_axis_range(phi_o, 0, kPi);
+    if (phi_o.size() > 1) check_ends(phi_o, 0, kPi);
+  } else {
+    check_ends(phi_i, 0, kPi / 2);
+    check_period(phi_o, 2 * kPi);
+    check_axis_range(phi_o, 0, 2 * kPi);
+  }
+}
+
+void check_symmetry(const Table& table) {
+  const bool isotropic = table.material.roughness.is_isotropic();
+  if (isotropic == (table.symmetry == Symmetry::isotropic)) return;
+  throw Error("symmetry is " + name_of(table.symmetry) + " but material.roughness is " +
+              to_string(table.material.roughness) + "; expected symmetry " +
+              name_of(isotropic ? Symmetry::isotropic : Symmetry::anisotropic));
+}
+
+void check_ranges(const Table& table) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Interval allowed = allowed_interval(kParameterNames[k]);
+    check_axis_range(table.parameter_axis(k), allowed.low, allowed.high);
+  }
+  if (table.is_factored()) return;
+  const auto& axes = table.remainder.axes();
+  for (const std::size_t k : {3u, 5u}) check_axis_range(axes[k], 1e-6, 1);
+  check_azimuths(table.symmetry, axes[4], axes[6]);
+  check_axis_range(table.film_reflectance.axes()[2], 0, 1);
+  if (table.rest_stderr.axes() != axes) throw Error("array 'rest_stderr' has other axes than 'remainder'");
+  if (!table.film_transmittance.empty() && table.film_transmittance.axes() != table.film_reflectance.axes())
+    throw Error("array 'film_transmittance' has other axes than 'film_reflectance'");
+}
+
+void check_factor_axes(const Table& table, const NdArray& array, std::size_t first_cosine) {
+  const auto& axes = array.axes();
+  check_axis_range(axes[0], 1, 5);
+  check_axis_range(axes[1], 0, 1e12);
+  for (std::size_t k = first_cosine; k < axes.size(); k += 2) {
+    check_axis_range(axes[k], 1e-6, 1);
+    check_period(axes[k + 1], 0);
+    if (table.symmetry == Symmetry::anisotropic) {
+      check_ends(axes[k + 1], 0, kPi / 2);
+    } else if (axes[k + 1].size() != 1) {
+      throw Error("axis '" + axes[k + 1].name + "' has " + std::to_string(axes[k + 1].size()) +
+                  " nodes; an isotropic table has 1");
+    }
+  }
+}
+
+// Look-ups locate wi and wo on the same nodes.
+void check_same_ends(const NdArray& exchange) {
+  const auto& axes = exchange.axes();
+  for (const std::size_t k : {4u, 5u}) {
+    Axis like_o = axes[k];
+    like_o.name = axes[k + 2].name;
+    if (!(like_o == axes[k + 2]))
+      throw Error("array 'exchange': axes '" + axes[k].name + "' and '" + like_o.name + "' differ");
+  }
+}
+
+std::vector<double> parse_numbers(const Attributes& attributes, const std::string& key) {
+  std::vector<double> numbers;
+  for (const auto& text : split(require(attributes, key), ' ')) {
+    double value = 0;
+    if (!parse_number(text, value) || !std::isfinite(value))
+      throw Error("attribute '" + key + "' holds '" + text + "', which is no finite number");
+    numbers.push_back(value);
+  }
+  return numbers;
+}
+
+Wavelengths read_wavelengths(const Attributes& attributes) {
+  Wavelengths w;
+  w.nm = parse_numbers(attributes, "spectral.nm");
+  w.albedo = parse_numbers(attributes, "spectral.albedo");
+  w.absorption = parse_numbers(attributes, "spectral.absorption");
+  const auto r = parse_numbers(attributes, "spectral.weight_r"),
+             g = parse_numbers(attributes, "spectral.weight_g"),
+             b = parse_numbers(attributes, "spectral.weight_b");
+  const std::size_t count = w.nm.size();
+  for (const std::size_t size : {w.albedo.size(), w.absorption.size(), r.size(), g.size(), b.size()})
+    if (size != count || count > kMostWavelengths)
+      throw Error("attributes 'spectral.*' are lists of different lengths, or of more than " +
+                  std::to_string(kMostWavelengths));
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!(w.nm[k] >= 1)) throw Error("attribute 'spectral.nm' holds a wavelength below 1 nm");
+    if (!(w.albedo[k] >= 0 && w.albedo[k] <= 1)) throw Error("attribute 'spectral.albedo' leaves 0 to 1");
+    if (!(w.absorption[k] >= 0)) throw Error("attribute 'spectral.absorption' holds a negative number");
+    w.weight.push_back({r[k], g[k], b[k]});
+  }
+  return w;
+}
+
+void write_wavelengths(const Wavelengths& w, Attributes& attributes) {
+  attributes["spectral.nm"] = to_text(w.nm);
+  attributes["spectral.albedo"] = to_text(w.albedo);
+  attributes["spectral.absorption"] = to_text(w.absorption);
+  const char* const names[] = {"r", "g", "b"};
+  for (int c = 0; c < 3; ++c) {
+    std::vector<double> weights;
+    for (const Rgb& weight : w.weight) weights.push_back(weight[c]);
+    attributes[std::string("spectral.weight_") + names[c]] = to_text(weights);
+  }
+}
+
+constexpr const char* kGridPrefix = "grid.";
+
+Factors read_factors(const TableParts& parts, const Table& table) {
+  Factors factors;
+  Attributes grid;
+  for (const auto& [key, value] : parts.attributes)
+    if (key.starts_with(kGridPrefix)) grid[key.substr(std::string_view(kGridPrefix).size())] = value;
+  factors.grid = parse_axes(grid, "grid");
+  if (factors.grid.size() != kParameterNames.size())
+    throw Error("attributes 'grid.*' do not describe 3 axes");
+  for (std::size_t k = 0; k < factors.grid.size(); ++k) {
+    const Axis& axis = factors.grid[k];
+    if (axis.name != kParameterNames[k])
+      throw Error("grid axis " + std::to_string(k) + " is '" + axis.name + "'; expected '" +
+                  kParameterNames[k] + "'");
+    if (const std::string defect = axis.defect(); !defect.empty())
+      throw Error("grid axis '" + axis.name + "' " + defect);
+  }
+  factors.wavelengths = read_wavelengths(parts.attributes);
+  if (!table.material.is_smooth()) {
+    factors.arrival = checked_array(parts, "arrival", kArrivalAxes, 1);
+    check_factor_axes(table, factors.arrival, 3);
+  }
+  if (table.material.absorption_path == AbsorptionPath::sum) {
+    factors.returned = checked_array(parts, "returned", kReturnedAxes, 1);
+    check_factor_axes(table, factors.returned, kReturnedAxes.size());
+    for (const float value : factors.returned.values())
+      if (!(value >= 0 && value <= 1)) throw Error("array 'returned' leaves 0 to 1");
+  } else {
+    factors.exchange = checked_array(parts, "exchange", kExchangeAxes, 1);
+    check_factor_axes(table, factors.exchange, 4);
+    check_same_ends(factors.exchange);
+  }
+  return factors;
+}
+
+FrameKind read_frame(const Attributes& attributes) {
+  const std::string& name = require(attributes, "rest_frame");
+  for (const auto frame : {FrameKind::closed, FrameKind::none})
+    if (name == name_of(frame)) return frame;
+  throw Error("attribute 'rest_frame' is '" + name + "'; allowed: closed, none");
+}
+
+void read_dense(const TableParts& parts, Table& table) {
+  table.frame = read_frame(parts.attributes);
+  table.film_reflectance = checked_array(parts, "film_reflectance", kFilmAxes);
+  if (!table.material.is_smooth() && table.frame == FrameKind::closed)
+    table.film_transmittance = checked_array(parts, "film_transmittance", kFilmAxes);
+  table.remainder = checked_array(parts, "remainder", kRestAxes);
+  table.rest_stderr = checked_array(parts, "rest_stderr", kRestAxes, 1);
+}
+
+// What the colours are. `spectrum` is part of the info already.
+void read_spectrum(const TableParts& parts, Table& table) {
+  const Attributes& attributes = parts.attributes;
+  const std::string& spectrum = require(attributes, "spectrum");
+  if (spectrum != "rgb3" && spectrum != "full")
+    throw Error("attribute 'spectrum' is '" + spectrum + "'; allowed: rgb3, full");
+  if (spectrum == "rgb3") return;
+  for (const char* key : {"color_space", "illuminant", "wavelengths"})
+    table.info[key] = require(attributes, key);
+  if (!table.is_factored() && table.frame == FrameKind::closed)
+    table.first_visit = checked_array(parts, "first_visit", kFirstVisitAxes);
+  try {
+    table.color_space();
+  } catch (const Error& error) {
+    throw Error(std::string("attribute 'color_space': ") + error.what());
+  }
+}
+
+Table build(const TableParts& parts) {
+  const std::string& version = require(parts.attributes, "schema_version");
+  if (version != std::to_string(kTableSchemaVersion))
+    throw Error("schema version is '" + version + "'; this reader knows " +
+                std::to_string(kTableSchemaVersion));
+  Table table;
+  for (const auto& key : material_keys())
+    set_from_text(table.material, key, require(parts.attributes, "material." + key));
+  if (const auto defect = table.material.defect()) throw Error(defect->message());
+  const std::string& symmetry = require(parts.attributes, "symmetry");
+  if (symmetry != "isotropic" && symmetry != "anisotropic")
+    throw Error("symmetry is '" + symmetry + "'; allowed: isotropic, anisotropic");
+  table.symmetry = symmetry == "isotropic" ? Symmetry::isotropic : Symmetry::anisotropic;
+  check_symmetry(table);
+  const std::string& encoding = require(parts.attributes, "encoding");
+  if (encoding == "factored")
+    table.factors = read_factors(parts, table);
+  else if (encoding == "dense")
+    read_dense(parts, table);
+  else
+    throw Error("encoding is '" + encoding + "'; allowed: dense, factored");
+  check_ranges(table);
+  if (require(parts.attributes, "content_hash") != parts_hash(parts))
+    throw Error("content does not match its hash: the file is damaged");
+  for (const char* key : kRequiredInfo) table.info[key] = require(parts.attributes, key);
+  read_spectrum(parts, table);
+  for (const auto& [key, value] : parts.attributes)
+    if (key.starts_with("error.") || key == "noise" || key == "plan") table.info[key] = value;
+  return table;
+}
+
+}  // namespace
+
+Attributes describe_axes(const std::vector<Axis>& axes) {
+  Attributes result;
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    const std::string prefix = "axis." + std::to_string(k) + ".";
+    result[prefix + "name"] = axes[k].name;
+    result[prefix + "unit"] = axes[k].unit;
+    result[prefix + "power"] = to_text(axes[k].power);
+    result[prefix + "period"] = to_text(axes[k].period);
+    result[prefix + "origin"] = to_text(axes[k].origin);
+    result[prefix + "interpolation"] = axes[k].is_cubic ? "cubic" : "linear";
+    result[prefix + "nodes"] = to_text(axes[k].nodes);
+  }
+  return result;
+}
+
+std::vector<Axis> parse_axes(const Attributes& attributes, const std::string& array_name) {
+  std::vector<Axis> axes;
+  for (std::size_t k = 0; k < NdArray::kMaxRank; ++k) {
+    const std::string prefix = "axis." + std::to_string(k) + ".";
+    if (!attributes.count(prefix + "name")) break;
+    Axis axis;
+    axis.name = require(attributes, prefix + "name");
+    axis.unit = require(attributes, prefix + "unit");
+    const auto number = [&](const std::string& text) {
+      double value = 0;
+      if (!parse_number(text, value))
+        throw Error("array '" + array_name + "': axis '" + axis.name + "' holds '" + text +
+                    "', which is no number");
+      return value;
+    };
+    axis.power = number(require(attributes, prefix + "power"));
+    axis.period = number(require(attributes, prefix + "period"));
+    axis.origin = number(require(attributes, prefix + "origin"));
+    const std::string& interpolation = require(attributes, prefix + "interpolation");
+    if (interpolation != "linear" && interpolation != "cubic")
+      throw Error("array '" + array_name + "': axis '" + axis.name + "' has interpolation '" + interpolation +
+                  "'; allowed: linear, cubic");
+    axis.is_cubic = interpolation == "cubic";
+    for (const auto& node : split(require(attributes, prefix + "nodes"), ' '))
+      axis.nodes.push_back(number(node));
+    axes.push_back(std::move(axis));
+  }
+  return axes;
+}
+
+void visit_values(const NdArray& array, const DenseCells* cells,
+                  const std::function<void(std::size_t first, std::span<const float> values)>& visit) {
+  if (!array.is_outline()) return visit(0, array.values());
+  if (!cells) throw Error("array '" + array.name() + "' has no values");
+  constexpr std::size_t kPiece = 1 << 22;  // values, unless a node has more
+  const std::size_t stride = array.stride(kParameterNames.size() - 1), nodes = array.cells() / stride;
+  const std::size_t at_once = std::max<std::size_t>(1, kPiece / (stride * array.channels()));
+  for (std::size_t first = 0; first < nodes; first += at_once) {
+    const std::size_t count = std::min(at_once, nodes - first);
+    visit(first * stride,
+          array.channels() == 1 ? cells->rest_stderr(first, count) : cells->remainder(first, count));
+  }
+}
+
+TableParts to_parts(const Table& table, const DenseCells* cells) {
+  if (!table.is_factored())
+    for (const NdArray* array : {&table.film_reflectance, &table.remainder, &table.rest_stderr})
+      if (array->empty()) throw Error("an empty table cannot be written");
+  TableParts parts;
+  parts.attributes = table.info;
+  parts.attributes["schema_version"] = std::to_string(kTableSchemaVersion);
+  parts.attributes["symmetry"] = name_of(table.symmetry);
+  for (const auto& key : material_keys()) parts.attributes["material." + key] = get_text(table.material, key);
+  if (table.is_factored()) {
+    for (const auto& [key, value] : describe_axes(table.factors.grid))
+      parts.attributes[kGridPrefix + key] = value;
+    write_wavelengths(table.factors.wavelengths, parts.attributes);
+  }
+  if (!table.is_factored()) parts.attributes["rest_frame"] = name_of(table.frame);
+  const Factors& f = table.factors;
+  for (const NdArray* array :
+       {&f.arrival, &f.returned, &f.exchange, &table.film_reflectance, &table.remainder, &table.rest_stderr,
+        &table.film_transmittance, &table.first_visit})
+    if (!array->empty()) parts.arrays.push_back(*array);
+  for (const NdArray& array : parts.arrays) require_finite(array, cells);
+  // One order for every file form: both libraries list arrays in an order of their own.
+  std::sort(parts.arrays.begin(), parts.arrays.end(),
+            [](const auto& a, const auto& b) { return a.name() < b.name(); });
+  parts.attributes["content_hash"] = parts_hash(parts, cells);
+  return parts;
+}
+
+Table from_parts(const TableParts& parts, const std::string& name) {
+  try {
+    TableParts sorted = parts;
+    std::sort(sorted.arrays.begin(), sorted.arrays.end(),
+              [](const auto& a, const auto& b) { return a.name() < b.name(); });
+    return build(sorted);
+  } catch (const Error& error) {
+    throw Error(name + ": not a usable table: " + error.what());
+  }
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,63 @@
+#include "sunbeam/detail/text.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "sunbeam/core/rng.h"
+
+namespace sunbeam {
+namespace {
+
+void expect_round_trip(double value) {
+  double back = 0;
+  ASSERT_TRUE(parse_number(to_text(value), back)) << to_text(value);
+  EXPECT_EQ(std::bit_cast<std::uint64_t>(back), std::bit_cast<std::uint64_t>(value)) << to_text(value);
+}
+
+TEST(Text, RoundTripKeepsEveryBit) {
+  for (const double value : {0.0, -0.0, 0.1, 1.0 / 3, 1e-310, 5e-324, 1.7976931348623157e308, 123456789.0})
+    expect_round_trip(value);
+  Rng rng(1, 0);
+  for (int i = 0; i < 10000; ++i) {
+    const std::uint64_t high = rng.next();
+    const double value = std::bit_cast<double>(high << 32 | rng.next());
+    if (std::isfinite(value)) expect_round_trip(value);
+  }
+}
+
+TEST(Text, ShortestForm) {
+  EXPECT_EQ(to_text(0.1), "0.1");
+  EXPECT_EQ(to_text(300.0), "300");
+  EXPECT_EQ(to_text(std::vector<double>{1, 0.5, -2}), "1 0.5 -2");
+  EXPECT_EQ(to_text(std::vector<double>{}), "");
+}
+
+TEST(Text, ParseTakesTheWholeTextOrNothing) {
+  double value = 0;
+  EXPECT_TRUE(parse_number(" 1.5 ", value));
+  EXPECT_EQ(value, 1.5);
+  EXPECT_TRUE(parse_number("+2e3\r", value));
+  EXPECT_EQ(value, 2000);
+  EXPECT_TRUE(parse_number("inf", value));
+  EXPECT_EQ(value, std::numeric_limits<double>::infinity());
+  for (const char* bad : {"", " ", "1.5x", "x", "1 2", "1,5", "--1", "0x10", "1e", "+"})
+    EXPECT_FALSE(parse_number(bad, value)) << bad;
+}
+
+// "+-1" is no number in any notation.
+TEST(Text, ParseRefusesTwoSigns) {
+  double value = 0;
+  EXPECT_FALSE(parse_number("+-1", value));
+}
+
+TEST(Text, SplitKeepsEmptyParts) {
+  EXPECT_EQ(split("a;b;c", ';'), (std::vector<std::string>{"a", "b", "c"}));
+  EXPECT_EQ(split(";a;", ';'), (std::vector<std::string>{"", "a", ""}));
+  EXPECT_EQ(split("", ';'), (std::vector<std::string>{""}));
+}
+
+}  // namespace
+}  // namespace sunbeam

@@ -12,6 +12,7 @@
 // a facet changes sides: depths become e^-inside + e^-outside = 1, directions turn round.
 #pragma once
 
+#include "sunbeam/core/rng.h"
 #include "sunbeam/detail/ggx.h"
 
 namespace sunbeam::walk {

@@ -10,7 +10,7 @@
 #include "sunbeam/core/rng.h"
 #include "sunbeam/core/vec.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 struct BsdfSample {
   Vec3 wi;
@@ -64,4 +64,4 @@ class Bsdf {
   virtual bool is_isotropic() const { return false; }
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -9,7 +9,7 @@
 #include "sunbeam/bsdf.h"
 #include "sunbeam/core/color_space.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // `Inner` is a Bsdf, kept by value.
 template <class Inner>
@@ -46,4 +46,4 @@ class ColorConvertedBsdf final : public Bsdf {
   ColorMatrix matrix_;
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -12,7 +12,7 @@
 #include "sunbeam/core/vec.h"
 #include "sunbeam/detail/roughness.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // How light passes the film: "straight" without bending (one reflectance serves both sides), or "refract"
 // from exterior to base medium, with the reversed film and total internal reflection seen from below.
@@ -89,4 +89,4 @@ struct Interval {
 };
 Interval allowed_interval(std::string_view key);
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

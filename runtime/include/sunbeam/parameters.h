@@ -5,7 +5,7 @@
 
 #include "sunbeam/material.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // In the order of a table's axes.
 inline constexpr std::array<const char*, 3> kParameterNames = {"film_thickness_nm", "base_ior",
@@ -26,4 +26,4 @@ struct Parameters {
   std::array<double, 3> values() const { return {film_thickness_nm, base_ior, absorption_per_nm}; }
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

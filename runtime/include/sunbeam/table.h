@@ -42,7 +42,7 @@
 #include "sunbeam/material.h"
 #include "sunbeam/parameters.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 inline constexpr int kTableSchemaVersion = 2;
 
@@ -150,4 +150,4 @@ class RestFrame {
   FirstVisit first_visit_;
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

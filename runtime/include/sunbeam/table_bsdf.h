@@ -15,7 +15,7 @@
 #include "sunbeam/bsdf.h"
 #include "sunbeam/table.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 class BoundTable;
 
@@ -56,4 +56,4 @@ class TableBsdf final : public Bsdf {
   std::shared_ptr<const BoundTable> bound_;
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -10,7 +10,7 @@
 
 #include "sunbeam/table.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 Table load_table_exr(const std::string& path);
 Table parse_table_exr(std::string_view bytes, const std::string& name);  // from memory; `name` for messages
@@ -31,4 +31,4 @@ class DenseCells {
 // The same file as that of the table with its values, in memory for a few nodes.
 void save_table_exr(const Table& outline, const DenseCells& cells, const std::string& path);
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

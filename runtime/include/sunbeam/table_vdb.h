@@ -6,7 +6,7 @@
 
 #include "sunbeam/table.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 Table load_table_vdb(const std::string& path);
 Table parse_table_vdb(std::string_view bytes, const std::string& name);
@@ -20,4 +20,4 @@ std::string table_bytes(const Table& table, const std::string& path);
 // Throws Error unless the extension is one of the two.
 void require_table_extension(const std::string& path);
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

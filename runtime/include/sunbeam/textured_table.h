@@ -47,7 +47,7 @@
 #include "sunbeam/table.h"
 #include "sunbeam/table_bsdf.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 struct FloatRgb;
 struct TexturedData;
@@ -114,4 +114,4 @@ class TexturedTable {
   std::shared_ptr<const TexturedData> data_;
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

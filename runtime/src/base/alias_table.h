@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 template <int kBins>
 class AliasTable {
@@ -73,4 +73,4 @@ class AliasTable {
   std::array<std::uint32_t, kBins> bins_{};  // a cache line holds sixteen
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

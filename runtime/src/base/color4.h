@@ -4,7 +4,7 @@
 #include "runtime/src/base/lanes.h"
 #include "sunbeam/core/vec.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 using Color4 = Floats4;
 
@@ -70,4 +70,4 @@ T lerp(const T* nodes, const EvenPosition& at) {
   return nodes[at.lower] + at.upper_weight * (nodes[at.lower + 1] - nodes[at.lower]);
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -4,7 +4,7 @@
 
 #include "sunbeam/core/error.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 struct Chromaticity {
@@ -102,4 +102,4 @@ Rgb ClipAccount::clip(const Rgb& color, ColorSpace space) {
   return result.clipped;
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -1,7 +1,7 @@
 // What compilers say in their own words. Elsewhere, and with SUNBEAM_PORTABLE, the words vanish.
 #pragma once
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 #if defined(__GNUC__) && !defined(SUNBEAM_PORTABLE)
 #define SUNBEAM_ALWAYS_INLINE [[gnu::always_inline]] inline
@@ -15,4 +15,4 @@ inline void prefetch(const void* address) { __builtin_prefetch(address); }
 inline void prefetch(const void*) {}
 #endif
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -4,7 +4,7 @@
 #include "runtime/src/base/color4.h"
 #include "sunbeam/detail/axis.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 class EvenAxis {
  public:
@@ -38,4 +38,4 @@ class EvenAxis {
   int nodes_;
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

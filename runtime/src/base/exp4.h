@@ -3,7 +3,7 @@
 
 #include "runtime/src/base/color4.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // Relative error 3e-7; arguments are kept within [-87, 87], so the result is a normal number.
 inline Color4 exp4(const Color4& x) {
@@ -20,4 +20,4 @@ inline Color4 exp4(const Color4& x) {
   return bits_as<Color4>(bits_as<Ints4>(series) + (convert<Ints4>(power) << 23));
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

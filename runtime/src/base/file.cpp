@@ -12,7 +12,7 @@
 #include "runtime/src/base/file_sync.h"
 #include "sunbeam/core/error.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 AtomicFile::AtomicFile(const std::string& path)
     : target_(path), path_(path + ".tmp" + std::to_string(std::random_device()())) {
@@ -82,4 +82,4 @@ std::string extension(const std::string& path) {
   return ext;
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

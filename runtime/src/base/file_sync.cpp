@@ -7,7 +7,7 @@
 #include <cerrno>
 #endif
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 #ifdef SUNBEAM_PORTABLE
 
@@ -27,4 +27,4 @@ bool sync_to_disk(const std::string& path) {
 
 #endif
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -3,10 +3,10 @@
 
 #include <string>
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // Returns when the closed file at `path` is on the disk, false with errno if it cannot be. With
 // SUNBEAM_PORTABLE the system writes it when it likes.
 bool sync_to_disk(const std::string& path);
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -8,7 +8,7 @@
 #include "sunbeam/core/rng.h"
 #include "sunbeam/core/vec.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // Cosine and sine to 2e-7: a table's, turned on by at most half a step, where short series do. Nothing waits
 // long for anything else, and there is no choice that a processor would have to guess.
@@ -48,4 +48,4 @@ inline const std::array<FloatTurn::Middle, FloatTurn::kSteps> FloatTurn::kMiddle
   return middles;
 }();
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 std::string digits(const XXH128_hash_t& hash) {
@@ -32,4 +32,4 @@ void ContentHash::add(std::string_view bytes) {
 
 std::string ContentHash::text() const { return digits(XXH3_128bits_digest(&state_->stream)); }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

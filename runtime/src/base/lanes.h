@@ -14,7 +14,7 @@
 #include <emmintrin.h>
 #endif
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 #ifdef SUNBEAM_PORTABLE
 
@@ -146,4 +146,4 @@ SUNBEAM_ALWAYS_INLINE void square_root(const Doubles4& x, Doubles4& root) {
 
 #endif
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

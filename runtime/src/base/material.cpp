@@ -6,7 +6,7 @@
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/text.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 struct NumericKey {
@@ -166,4 +166,4 @@ void set_from_text(Material& material, std::string_view key, const std::string& 
   }
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -6,7 +6,7 @@
 
 #include "sunbeam/core/error.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 bool baseline_is_forced() {
   const char* const found = std::getenv("SUNBEAM_KERNELS");
@@ -17,4 +17,4 @@ bool baseline_is_forced() {
   return wish == "baseline";
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -3,7 +3,7 @@
 #include <charconv>
 #include <system_error>
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 std::string to_text(double value) {
   char buffer[64];
@@ -38,4 +38,4 @@ std::vector<std::string> split(std::string_view text, char separator) {
   }
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -6,7 +6,7 @@
 
 #include "runtime/src/film/film_spectrum.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 struct FilmMedia {
   double exterior_ior, film_ior, base_ior, thickness_nm;
@@ -31,4 +31,4 @@ extern const FilmKernels kAvx512FilmKernels;
 // Those that this machine runs, the fastest last.
 std::span<const FilmKernels* const> supported_film_kernels();
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -1,7 +1,7 @@
 #include "runtime/src/film/make_film_kernels.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 const FilmKernels kBaselineFilmKernels = film_kernels<Floats4>("baseline");
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -10,7 +10,7 @@
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/processor.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 double with_12_bits(double x) {
@@ -127,4 +127,4 @@ void FilmSpectrum::powers(double thickness_nm, double base_ior, float cosine,
         static_cast<float>(film.transmittance(double{wavelengths_.per_high[k]} + wavelengths_.per_low[k]));
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

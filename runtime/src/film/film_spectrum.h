@@ -21,7 +21,7 @@
 
 #include "sunbeam/detail/wavelengths.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 struct FloatRgb {
   float r = 0, g = 0, b = 0;
@@ -73,4 +73,4 @@ class FilmSpectrum {
   const FilmKernels* kernels_;
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -13,7 +13,7 @@
 #include "runtime/src/base/lanes.h"
 #include "runtime/src/film/film_kernels.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 constexpr int kCosines = 4;
@@ -182,4 +182,4 @@ constexpr FilmKernels film_kernels(const char* name) {
 }
 
 }  // namespace
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 BoundAxis::BoundAxis(const Axis& axis, std::size_t stride)
     : power_(axis.power), period_(axis.period), origin_(axis.origin), first_(axis.nodes.front()) {
@@ -43,4 +43,4 @@ BoundAxis::BoundAxis(const Axis& axis, std::size_t stride)
   }
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -12,7 +12,7 @@
 
 #include "sunbeam/detail/axis.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 class BoundAxis {
  public:
@@ -78,4 +78,4 @@ class BoundAxis {
   std::array<std::uint16_t, kGuideCells + 1> guide_{};  // the interval in which each even cell begins
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -1,6 +1,6 @@
 #include "runtime/src/lookup/bound_rest.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 constexpr float kLeastCosine = 1e-4f;
@@ -75,4 +75,4 @@ Color4 BoundRest::anisotropic(const Vec3& wo, const Vec3& wi, const Cosine& cos_
   return scale_at(cos_o, phi_o) * scale_at(cos_i, phi_i) * ratio;
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

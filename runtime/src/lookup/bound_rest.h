@@ -11,7 +11,7 @@
 #include "runtime/src/base/color4.h"
 #include "runtime/src/lookup/factored_rest.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 class BoundRest {
  public:
@@ -72,4 +72,4 @@ class BoundRest {
   std::vector<Color4> scale_, ratio_;
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

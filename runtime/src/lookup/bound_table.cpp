@@ -3,7 +3,7 @@
 #include "runtime/src/film/film_spectrum.h"
 #include "sunbeam/detail/text.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 constexpr int kFilmNodes = 1025;          // over even cosines
@@ -363,4 +363,4 @@ void BoundTable::eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f
   std::copy_n(values.begin(), left, f.begin() + static_cast<std::ptrdiff_t>(last));
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

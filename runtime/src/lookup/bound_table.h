@@ -15,7 +15,7 @@
 #include "sunbeam/detail/ggx.h"
 #include "sunbeam/table_bsdf.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 class BoundTable {
  public:
@@ -107,4 +107,4 @@ class BoundTable {
   FirstSampler first_sampler_;  // an isotropic rough film's
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -10,7 +10,7 @@
 #include "runtime/src/base/alias_table.h"
 #include "runtime/src/lookup/facets.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 class RestSampler {
  public:
@@ -55,4 +55,4 @@ class RestSampler {
   std::vector<float> density_;
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -8,7 +8,7 @@
 #include "sunbeam/detail/angles.h"
 #include "sunbeam/detail/nd_array.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 class DenseAngles {
  public:
@@ -68,4 +68,4 @@ class DenseAngles {
   bool has_azimuth_;  // else those axes have one node each, and finding the azimuths would be in vain
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -1,6 +1,6 @@
 #include "runtime/src/lookup/dense_rest.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 constexpr std::size_t kCurveNodes = 1025;  // linear between: towards grazing T is curved
@@ -85,4 +85,4 @@ Rgb DenseRest::AzimuthMean::operator()(double cos_i) const {
   return rest_.decoded(remainder, cos_i, cos_o_);
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -7,7 +7,7 @@
 #include "runtime/src/lookup/dense_angles.h"
 #include "sunbeam/table.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 class DenseRest {
  public:
@@ -49,4 +49,4 @@ class DenseRest {
   NdArray stderr_;  // over the four angles
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

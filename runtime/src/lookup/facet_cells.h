@@ -13,7 +13,7 @@
 #include "runtime/src/base/alias_table.h"
 #include "runtime/src/lookup/facets.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 class FirstSampler {
  public:
@@ -91,4 +91,4 @@ inline const std::array<float, FirstSampler::kTurns / 2 - 1> FirstSampler::kEdge
   return edges;
 }();
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -12,7 +12,7 @@
 #include "sunbeam/core/rng.h"
 #include "sunbeam/detail/roughness.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // In [0, 1), 24 random bits.
 inline float uniform_float(Rng& rng) { return static_cast<float>(rng.next() >> 8) * 0x1p-24f; }
@@ -148,4 +148,4 @@ struct FacetLights {
   }
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -1,6 +1,6 @@
 #include "runtime/src/lookup/factored_rest.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 // Gauss-Legendre over cosines: 1e-4 of what passes a film of a dozen fringe orders.
@@ -133,4 +133,4 @@ Rgb FactoredRest::rest(const Row& i, const End& o) const {
   return sum;
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

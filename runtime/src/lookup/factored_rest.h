@@ -7,7 +7,7 @@
 #include "runtime/src/film/film_spectrum.h"
 #include "sunbeam/table.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 class FactoredRest {
  public:
@@ -62,4 +62,4 @@ class FactoredRest {
   std::vector<std::vector<double>> exchange_;  // of each wavelength, end by end
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -6,7 +6,7 @@
 
 #include "sunbeam/detail/axis.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // Where a fringe order lies among the nodes of an array, whose axis is even or has one node. Four nodes
 // always, so that loops have no branch; arrays carry kMoreOrders rows more.
@@ -32,4 +32,4 @@ inline float blend(const std::vector<float>& values, const OrderStencil& at, std
          at.weight[3] * from[3 * stride];
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

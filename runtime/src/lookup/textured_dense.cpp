@@ -2,7 +2,7 @@
 
 #include "runtime/src/lookup/dense_rest.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 constexpr int kAlbedoNodes = 4;  // of each parameter
@@ -133,4 +133,4 @@ std::size_t TexturedDense::bytes() const {
          (transmittance_ ? transmittance_->bytes() : 0) + albedos_.size() * sizeof(float);
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -8,7 +8,7 @@
 #include "runtime/src/lookup/dense_angles.h"
 #include "sunbeam/table.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // Parameters lie in the grid, directions above the horizon.
 class TexturedDense {
@@ -59,4 +59,4 @@ class TexturedDense {
   std::vector<float> albedos_;  // (parameters, root of the cosine)
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

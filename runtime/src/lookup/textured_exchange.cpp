@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 TexturedExchange::TexturedExchange(const Table& table, const TexturedRest& rest, const TexturedShares& shares,
                                    const TexturedFactor& factor)
@@ -137,4 +137,4 @@ double TexturedExchange::most_leaving(const std::vector<float>& visits, const fl
   return most;
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

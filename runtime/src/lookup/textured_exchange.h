@@ -4,7 +4,7 @@
 
 #include "runtime/src/lookup/textured_factor.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // What it is made of must outlive it.
 class TexturedExchange {
@@ -50,4 +50,4 @@ class TexturedExchange {
   std::vector<std::size_t> visits_of_;      // whose of them a wavelength shares
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

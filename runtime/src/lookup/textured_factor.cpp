@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 constexpr double kLeastShare = 0.01;  // of the channels' mean: a folded colour may pass through 0
@@ -171,4 +171,4 @@ double TexturedFactor::first_chance(const FloatRgb& r, double rest, int c) const
   return std::clamp(of_first / (of_first + of_rest + kLeastValue), kLeastChance, 1 - kLeastChance);
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -4,7 +4,7 @@
 #include "runtime/src/lookup/textured_rest.h"
 #include "runtime/src/lookup/textured_shares.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // What it is made of must outlive it. `rest` need not have nodes yet.
 class TexturedFactor {
@@ -52,4 +52,4 @@ class TexturedFactor {
   std::vector<Rgb> norms_;                    // (thickness): fold(g A* A*)
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

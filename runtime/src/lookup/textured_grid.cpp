@@ -4,7 +4,7 @@
 
 #include "sunbeam/detail/textured_point.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 constexpr double kNodesPerFringe = 12;  // of the shortest wavelength
@@ -46,4 +46,4 @@ double TexturedGrid::cosine(int c) {
   return std::max(root * root, kLeastCosine);
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -6,7 +6,7 @@
 #include "runtime/src/base/even_axis.h"
 #include "sunbeam/table.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 struct TexturedGrid {
   explicit TexturedGrid(const Table& table);
@@ -33,4 +33,4 @@ struct TexturedGrid {
   int pair_cosines, pair_phis;
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -2,7 +2,7 @@
 
 #include "sunbeam/detail/factors.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 constexpr double kLeastFrame = 0.05, kLeastSmoothFrame = 1e-3;  // of m~
@@ -35,4 +35,4 @@ TexturedFrame::TexturedFrame(const TexturedMaterial& material, double base_ior, 
   below_offset = static_cast<float>(1 - ratio2);
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

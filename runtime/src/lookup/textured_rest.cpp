@@ -6,7 +6,7 @@
 #include "runtime/src/lookup/textured_factor.h"
 #include "runtime/src/lookup/textured_shares.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 // The weighted mean of the pigment's spectrum in each channel, and over channels.
@@ -111,4 +111,4 @@ TexturedPlace TexturedRest::place(const Parameters& at) const {
       {(1 - n_upper) * (1 - s_upper), (1 - n_upper) * s_upper, n_upper * (1 - s_upper), n_upper * s_upper}};
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -9,7 +9,7 @@
 #include "runtime/src/lookup/textured_grid.h"
 #include "sunbeam/detail/textured_point.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 class TexturedRest {
  public:
@@ -128,4 +128,4 @@ class TexturedRest {
   std::vector<Color4> pairs_;
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -3,7 +3,7 @@
 #include "runtime/src/base/exp4.h"
 #include "sunbeam/detail/textured_point.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 void exponentiate(std::vector<float>& values) {
@@ -136,4 +136,4 @@ void TexturedShares::let_pass(ThicknessAt thickness_at, std::vector<float>& shar
   }
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -6,7 +6,7 @@
 #include "runtime/src/lookup/order_stencil.h"
 #include "runtime/src/lookup/textured_grid.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // Nodes of (cos_theta, phi) that the value at a column is made of.
 struct ColumnTap {
@@ -63,4 +63,4 @@ class TexturedShares {
   std::vector<std::vector<float>> arrival_;  // of each wavelength: (fringe_order, column)
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

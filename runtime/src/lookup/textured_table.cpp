@@ -9,7 +9,7 @@
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/text.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 constexpr float kLeastChance = 0.05f;  // of either technique of a dense table
@@ -284,4 +284,4 @@ EvalAndSample TexturedTable::At::eval_and_sample(const Vec3& wo, const Vec3& wi,
   });
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

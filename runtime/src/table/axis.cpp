@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 double Axis::coordinate(double x) const {
   if (power == 1) return x - origin;
@@ -74,4 +74,4 @@ std::vector<double> spaced_nodes(double from, double to, std::size_t count, doub
   return nodes;
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -6,7 +6,7 @@
 
 #include "sunbeam/core/error.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 constexpr std::size_t kMaxCells = std::size_t{1} << 32;
@@ -83,4 +83,4 @@ NdArray NdArray::slice(std::span<const double> x) const {
   return result;
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

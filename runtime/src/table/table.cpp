@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 Rgb Table::transmittance(const std::array<double, 3>& x) const {
   if (film_transmittance.empty()) return Rgb(1) - film_reflectance.interpolate(x);
@@ -138,4 +138,4 @@ Rgb RestFrame::encode(const Rgb& rest, double cos_i, double cos_o, const Rgb& t_
   return transform(remainder, [](double x) { return std::clamp(x, -kLargestRemainder, kLargestRemainder); });
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -22,7 +22,7 @@
 #include "sunbeam/detail/file.h"
 #include "sunbeam/table_io.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 struct ImageSize {
@@ -227,4 +227,4 @@ void save_table_exr(const Table& outline, const DenseCells& cells, const std::st
   file.keep();
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -7,7 +7,7 @@
 #include "sunbeam/detail/hash.h"
 #include "sunbeam/detail/text.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 constexpr std::array<const char*, 3> kFilmAxes = {"film_thickness_nm", "base_ior", "cos_theta"};
@@ -417,4 +417,4 @@ Table from_parts(const TableParts& parts, const std::string& name) {
   }
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

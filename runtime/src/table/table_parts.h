@@ -10,7 +10,7 @@
 #include "sunbeam/table.h"
 #include "sunbeam/table_io.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 using Attributes = std::map<std::string, std::string>;
 
@@ -36,4 +36,4 @@ std::vector<Axis> parse_axes(const Attributes& attributes, const std::string& ar
 
 inline constexpr const char* kAttributePrefix = "sunbeam.";
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -24,7 +24,7 @@
 #include "sunbeam/detail/hash.h"
 #include "sunbeam/table_io.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 namespace {
 
 constexpr std::size_t kUuidOffset = 21, kUuidSize = 36, kVersionDigit = 14;
@@ -228,4 +228,4 @@ void save_table(const Table& table, const std::string& path) {
   write_file_atomically(path, table_bytes(table, path));
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

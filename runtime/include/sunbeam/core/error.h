@@ -3,11 +3,11 @@
 
 #include <stdexcept>
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

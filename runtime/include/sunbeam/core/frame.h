@@ -4,7 +4,7 @@
 
 #include "sunbeam/core/vec.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 struct Frame {
   Vec3 tangent, bitangent, normal;
@@ -35,4 +35,4 @@ struct Frame {
   }
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

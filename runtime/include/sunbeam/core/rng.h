@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 class Rng {
  public:
@@ -38,4 +38,4 @@ class Rng {
   std::uint64_t state_, increment_;
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

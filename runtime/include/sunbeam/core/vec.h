@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kInvPi = std::numbers::inv_pi;
@@ -76,4 +76,4 @@ constexpr Rgb transform(const Rgb& a, F f) {
 constexpr double square(double x) { return x * x; }
 constexpr double lerp(double t, double a, double b) { return a + t * (b - a); }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

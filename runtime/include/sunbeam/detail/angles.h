@@ -9,7 +9,7 @@
 
 #include "sunbeam/core/vec.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 enum class Symmetry { isotropic, anisotropic };
 
@@ -57,4 +57,4 @@ inline constexpr double pair_measure(Symmetry symmetry) {
   return symmetry == Symmetry::anisotropic ? 4 : 4 * kPi;
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // Two neighbouring nodes and the weight of the upper one.
 struct Bracket {
@@ -19,4 +19,4 @@ inline Bracket even_bracket(double cosine, std::size_t nodes) {
   return {lower, lower + 1, x - static_cast<double>(lower)};
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

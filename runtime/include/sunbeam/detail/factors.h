@@ -28,7 +28,7 @@
 #include "sunbeam/detail/wavelengths.h"
 #include "sunbeam/material.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // One number a cell. Directions are (cos_theta, phi), phi in [0, pi/2] for an anisotropic film and the one
 // node 0 for an isotropic one.
@@ -55,4 +55,4 @@ double arrival_cosine(const Material& material, double cosine);
 // exp(tau (1/m_i + 1/m_o - 1/(m_i m_o))), at most exp(tau).
 double one_visit_of_product(double optical_depth, double m_i, double m_o);
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // A file that takes its place only when it is whole: written to a temporary beside `path`, which keep()
 // flushes to disk and renames; without it the temporary is removed. Every function throws Error naming `path`
@@ -44,4 +44,4 @@ void require_writable(const std::string& path);
 // Lower-case extension with its dot, "" if none.
 std::string extension(const std::string& path);
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -10,7 +10,7 @@
 #include "sunbeam/detail/roughness.h"
 #include "sunbeam/detail/warp.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 class Ggx {
  public:
@@ -93,4 +93,4 @@ class Ggx {
   double u_, v_, u2_, v2_, uv3_;
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

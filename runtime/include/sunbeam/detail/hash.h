@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 std::string content_hash(std::string_view bytes);
 
@@ -25,4 +25,4 @@ class ContentHash {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -10,7 +10,7 @@
 #include "sunbeam/core/vec.h"
 #include "sunbeam/detail/axis.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 enum class Precision { half_float, single_float };
 
@@ -72,4 +72,4 @@ class NdArray {
   std::vector<float> values_;
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

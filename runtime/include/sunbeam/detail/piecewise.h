@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 class PiecewiseConstant {
  public:
@@ -58,4 +58,4 @@ class PiecewiseConstant {
   double integral_ = 0;
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

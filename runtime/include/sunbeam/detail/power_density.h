@@ -7,7 +7,7 @@
 #include "sunbeam/core/rng.h"
 #include "sunbeam/core/vec.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 class PowerDensity {
  public:
@@ -41,4 +41,4 @@ class PowerDensity {
   float upper_ = 0;  // chance of the next level
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

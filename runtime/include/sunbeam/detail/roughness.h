@@ -1,7 +1,7 @@
 // GGX roughness along the two tangents of the shading frame.
 #pragma once
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // Below this roughness a film would be numerically a mirror.
 inline constexpr double kMinRoughness = 1e-3;
@@ -22,4 +22,4 @@ struct Roughness {
   constexpr bool operator==(const Roughness&) const = default;
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // Shortest decimal text that reads back exactly.
 std::string to_text(double value);
@@ -16,4 +16,4 @@ bool parse_number(std::string_view text, double& value);
 
 std::vector<std::string> split(std::string_view text, char separator);
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

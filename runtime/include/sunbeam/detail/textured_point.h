@@ -8,7 +8,7 @@
 
 #include "sunbeam/material.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // The path of light between reflections in a rough film, over that at normal incidence; 1 for a smooth one,
 // whose fringes are not in L.
@@ -62,4 +62,4 @@ struct TexturedPlace {
   std::array<float, 4> weight;  // of the neighbours: base IOR is the higher bit, absorption the lower
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

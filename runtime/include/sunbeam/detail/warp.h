@@ -4,7 +4,7 @@
 
 #include "sunbeam/core/vec.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 struct Point2 {
   double x = 0, y = 0;
@@ -61,4 +61,4 @@ inline Vec3 sample_cosine(const Point2& u) {
   return {radius * turn.cosine, radius * turn.sine, std::sqrt(1 - u.x)};
 }
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

@@ -8,7 +8,7 @@
 
 #include "sunbeam/material.h"
 
-namespace sunbeam {
+namespace sunbeam::inline v1 {
 
 // Live models keep what they carry on the stack.
 inline constexpr std::size_t kMostWavelengths = 64;
@@ -49,4 +49,4 @@ struct Wavelengths {
   }
 };
 
-}  // namespace sunbeam
+}  // namespace sunbeam::inline v1

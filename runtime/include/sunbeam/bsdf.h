@@ -1,4 +1,4 @@
-// The contract of every BSDF in Sunbeam, live or tabulated.
+// This is the contract that every BSDF of Sunbeam keeps, live or tabulated.
 //
 // Frame: local, z = shading normal. `wo` points towards the viewer, `wi` towards the light; both are unit
 // vectors that point away from the surface. Only reflection exists: for wo.z <= 0 or wi.z <= 0 values and
@@ -12,19 +12,24 @@
 
 namespace sunbeam::inline v1 {
 
+// A direction that sample() has drawn, and what a path carries on along it.
 struct BsdfSample {
   Vec3 wi;
-  Rgb throughput;  // f * cos(theta_i) / pdf of the whole BSDF at wi, or an estimate with that mean;
-                   // for a Dirac lobe its weight / its probability
-  bool is_dirac;   // the direction comes from a Dirac lobe, which eval and pdf do not see
-  double mis_pdf;  // Bsdf::mis_pdf(wo, wi), known on the way; 0 for a Dirac lobe
+  // f cos(theta_i) / pdf of the whole BSDF at wi, or an estimate with that mean. For a Dirac lobe it is the
+  // lobe's weight over the probability of choosing it. The cosine is included, so a path multiplies by this
+  // alone.
+  Rgb throughput;
+  bool is_dirac;   // true if wi comes from a Dirac lobe, which eval and pdf do not see
+  double mis_pdf;  // equals Bsdf::mis_pdf(wo, wi); 0 for a Dirac lobe
 };
 
+// A value and the density that weights it, for light from a direction that is already known.
 struct EvalPdf {
-  Rgb f;       // 1/sr
+  Rgb f;       // 1/sr, without the cosine
   double pdf;  // 1/sr
 };
 
+// What a path needs at one vertex: the light that is sampled directly, and where to go on.
 struct EvalAndSample {
   EvalPdf eval;
   std::optional<BsdfSample> sample;
@@ -34,33 +39,35 @@ class Bsdf {
  public:
   virtual ~Bsdf() = default;
 
-  // f(wo, wi) in 1/sr, without the cosine and without Dirac lobes. A stochastic BSDF returns an unbiased
-  // estimate that depends on `rng` alone; a deterministic one leaves `rng` untouched.
+  // Returns f(wo, wi) in 1/sr, without the cosine and without Dirac lobes. A stochastic BSDF returns an
+  // unbiased estimate that depends on `rng` alone; a deterministic one leaves `rng` untouched.
   virtual Rgb eval(const Vec3& wo, const Vec3& wi, Rng& rng) const = 0;
 
-  // One direction. Empty when the walk is lost (absorbed, shadowed): it then contributes nothing.
+  // Draws one direction. The result is empty when the light is lost (absorbed, shadowed): the path then ends.
   virtual std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const = 0;
 
-  // Density per solid angle (1/sr) of a non-Dirac outcome of sample(), the chance of choosing it included:
-  // its integral is 1 - P(Dirac) - P(empty). Exact if the BSDF is deterministic, else an unbiased estimate.
+  // Returns the density per solid angle (1/sr) of a non-Dirac outcome of sample(). It includes the chance of
+  // choosing the lobe, so that its integral is 1 - P(Dirac) - P(empty). It is exact if the BSDF is
+  // deterministic, else an unbiased estimate.
   virtual double pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const = 0;
 
-  // The density to weight techniques with (MIS): deterministic and cheap. Equal to pdf() where that is exact,
-  // else an approximation; any positive function keeps MIS unbiased.
+  // Returns the density (1/sr) to weight techniques with in multiple importance sampling. It is deterministic
+  // and cheap. It equals pdf() where that is exact and approximates it elsewhere; any positive function keeps
+  // MIS unbiased.
   virtual double mis_pdf(const Vec3& wo, const Vec3& wi) const = 0;
 
-  // eval() and mis_pdf() together, where they share work at the price of one.
+  // Returns eval() and mis_pdf() together; where they share work this costs no more than one of them.
   virtual EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const {
     return {eval(wo, wi, rng), mis_pdf(wo, wi)};
   }
 
-  // eval_pdf(wo, wi) and then sample(wo), where they share work at less than the price of both.
+  // Returns eval_pdf(wo, wi) and then sample(wo); where they share work this costs less than both calls.
   virtual EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const {
     const EvalPdf value = eval_pdf(wo, wi, rng);
     return {value, sample(wo, rng)};
   }
 
-  // Whether turning wo and wi together about the normal changes nothing: any tangent serves.
+  // Says whether turning wo and wi together about the normal changes nothing, so that any tangent serves.
   virtual bool is_isotropic() const { return false; }
 };
 

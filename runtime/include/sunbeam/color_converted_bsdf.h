@@ -1,4 +1,5 @@
-// A BSDF whose colours are in one linear colour space, for a renderer that works in another.
+// This adapter serves a renderer whose linear colour space is not the table's: tables of full spectrum
+// usually hold ACEScg, and many renderers work in Rec.709 (Table::color_space() names the space).
 //
 // Values and throughputs go through the matrix rgb_to_rgb(from, to), which keeps greys; densities and
 // directions stay as they are. Components keep their sign: a colour that `to` cannot show has a negative one.
@@ -11,7 +12,7 @@
 
 namespace sunbeam::inline v1 {
 
-// `Inner` is a Bsdf, kept by value.
+// `Inner` is any Bsdf; it is kept by value.
 template <class Inner>
 class ColorConvertedBsdf final : public Bsdf {
  public:

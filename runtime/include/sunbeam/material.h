@@ -1,4 +1,4 @@
-// The parameters of the layered skin: exterior | thin film | pigment layer | diffuse base.
+// This file holds the parameters of the layered skin: exterior | thin film | pigment layer | diffuse base.
 //
 // Keys of recipes and tables are the member names. Lengths are in nm, absorption and scattering in 1/nm, the
 // rest has no unit.
@@ -14,18 +14,21 @@
 
 namespace sunbeam::inline v1 {
 
-// How light passes the film: "straight" without bending (one reflectance serves both sides), or "refract"
-// from exterior to base medium, with the reversed film and total internal reflection seen from below.
+// Says how light passes the film. "straight" does not bend it, and one reflectance serves both sides.
+// "refract" bends it from the exterior to the base medium; from below the film is met reversed, with total
+// internal reflection.
 enum class Transmission { straight, refract };
 
-// How the pigment attenuates between entering and leaving, tau = absorption_per_nm * pigment_thickness_nm:
-// "product" exp(-tau / (cos_i cos_o)), "sum" exp(-tau (1/cos_i + 1/cos_o)); cosines below the film.
+// Says how the pigment attenuates light between entering and leaving, with
+// tau = absorption_per_nm * pigment_thickness_nm and cosines below the film (Beer-Lambert):
+// "product" by exp(-tau / (cos_i cos_o)), "sum" by exp(-tau (1/cos_i + 1/cos_o)).
 enum class AbsorptionPath { product, sum };
 
-// What becomes of light that a rough film's facets throw onto other facets: "single" loses it, "multiple"
-// follows it until it leaves the microsurface (Heitz et al. 2016).
+// Says what becomes of light that a rough film's facets throw onto other facets: "single" loses it,
+// "multiple" follows it until it leaves the microsurface (Heitz et al. 2016).
 enum class Microfacet { single, multiple };
 
+// One skin. The intervals are those that every reader allows.
 struct Material {
   Transmission transmission = Transmission::refract;
   AbsorptionPath absorption_path = AbsorptionPath::sum;
@@ -47,31 +50,35 @@ struct Material {
   bool scatters() const { return scattering_depth() > 0; }
   bool has_multiple_facets() const { return microfacet == Microfacet::multiple && !is_smooth(); }
 
-  // The family that polar angles alone describe below the film, and that quadrature solves: no scattering in
-  // the pigment, isotropic facets met once.
+  // Says whether polar angles alone describe the light below the film, so that quadrature solves the
+  // material: the pigment does not scatter, and isotropic facets are met once.
   bool is_plain() const { return !scatters() && roughness.is_isotropic() && !has_multiple_facets(); }
 
-  // Values that do not go together; none if all is well.
+  // A value out of its interval, or two that do not go together.
   struct Defect {
     std::string key, text;  // "found V ...; allowed: ..."
     std::string message() const { return "key '" + key + "': " + text; }
   };
+  // Returns the first defect, or nothing if all is well.
   std::optional<Defect> defect() const;
 
-  // Radiance pays the squared index ratio once over a whole visit below the film: (n0/n2)^2 or 1.
+  // Returns (n0/n2)^2, which radiance pays once over a whole visit below the film, or 1 with "straight".
   double radiance_scale() const;
 
-  // Cosine below the film of a direction that crosses a smooth film at `cos_exterior`; 0 if none does.
+  // Returns the cosine below the film of a direction that crosses a smooth film at `cos_exterior`, by Snell's
+  // law; 0 if it is reflected totally.
   double cosine_below(double cos_exterior) const;
 
-  // The attenuation's exponent for one visit of the base, both cosines below the film and > 0.
+  // Returns the exponent of AbsorptionPath for one visit of the base; both cosines are below the film and >
+  // 0.
   double absorption_exponent(double cos_i, double cos_o) const;
 };
 
-// Walks through an optically thicker pigment would not end in useful time.
+// The largest scattering_depth() allowed: walks through a thicker pigment would not end in useful time.
 inline constexpr double kMostScatteringDepth = 100;
 
-// Text access by key, for CSV columns, table metadata and messages. Lists are separated by ';'.
+// These give access by key and text, for CSV columns, table metadata and messages. Lists are separated by
+// ';'.
 const std::vector<std::string>& material_keys();
 std::string get_text(const Material& material, std::string_view key);
 // Throws Error "key 'K': found V; allowed: ..." (without a file: the caller adds it).
@@ -80,10 +87,12 @@ void set_from_text(Material& material, std::string_view key, const std::string& 
 std::string_view to_string(Transmission transmission);
 std::string_view to_string(AbsorptionPath path);
 std::string_view to_string(Microfacet microfacet);
-std::string to_string(const Roughness& roughness);  // one number, or two with ';'
-std::string allowed_roughness();                    // what Roughness::is_allowed() allows
+// Returns one number, or two separated by ';'.
+std::string to_string(const Roughness& roughness);
+// Describes what Roughness::is_allowed() allows, for messages.
+std::string allowed_roughness();
 
-// Allowed interval of a numeric key, as used by every reader.
+// The allowed interval of a numeric key; every reader uses it.
 struct Interval {
   double low, high;
 };

@@ -1,4 +1,4 @@
-// What a table can be baked over, and what varies over a surface: the sliders of a skin.
+// The three parameters that a table is baked over and that a surface may vary: the sliders of a skin.
 #pragma once
 
 #include <array>
@@ -7,10 +7,11 @@
 
 namespace sunbeam::inline v1 {
 
-// In the order of a table's axes.
+// The names of the parameters, in the order of a table's axes.
 inline constexpr std::array<const char*, 3> kParameterNames = {"film_thickness_nm", "base_ior",
                                                                "absorption_per_nm"};
 
+// One point of the grid or between its nodes: nm, no unit, 1/nm.
 struct Parameters {
   double film_thickness_nm, base_ior, absorption_per_nm;
 

@@ -1,4 +1,4 @@
-// Linear RGB spaces, chromatic adaptation and what happens to colours outside a gamut.
+// This file converts between linear RGB spaces and accounts for colours outside a gamut.
 //
 // Policy. Narrow-band (iridescent) spectra can lie outside Rec.709, whose components then leave [0, 1].
 // Components keep their sign everywhere inside; nothing in this project clips on its own. ACEScg holds the
@@ -18,12 +18,12 @@ namespace sunbeam::inline v1 {
 // acescg: AP1 primaries, white x, y = 0.32168, 0.33767 (AMPAS S-2014-004).
 enum class ColorSpace { rec709, acescg };
 
-// As recipes and tables spell it: "rec709", "acescg".
+// Returns the name that recipes and tables use: "rec709", "acescg".
 std::string_view to_string(ColorSpace space);
-// Throws Error "found 'S'; allowed: rec709, acescg" (the caller adds where).
+// Returns the space of that name; throws Error "found 'S'; allowed: rec709, acescg" (the caller adds where).
 ColorSpace color_space_from(std::string_view name);
 
-// Rows of a linear map between tristimulus values or linear colours.
+// A linear map between tristimulus values or linear colours, by rows.
 struct ColorMatrix {
   Vec3 row[3];
 
@@ -36,23 +36,24 @@ struct ColorMatrix {
 };
 ColorMatrix inverse(const ColorMatrix& matrix);
 
-// Tristimulus values of the space's own white, Y = 1.
+// Returns the tristimulus values of the space's own white, with Y = 1.
 Vec3 white(ColorSpace space);
 
-// Linear RGB to XYZ relative to the space's own white: RGB (1, 1, 1) is `white(space)`.
+// Maps linear RGB to XYZ relative to the space's own white: RGB (1, 1, 1) becomes `white(space)`.
 ColorMatrix rgb_to_xyz(ColorSpace space);
 
-// Bradford's adaptation of XYZ seen under `from` to XYZ seen under `to` (CIE 160:2004; Lam 1985).
+// Adapts XYZ seen under the white `from` to XYZ seen under `to`, after Bradford (CIE 160:2004; Lam 1985).
 ColorMatrix bradford(const Vec3& from, const Vec3& to);
 
-// XYZ measured under an illuminant, under which a perfect white diffuser has `illuminant_white`, to linear
-// RGB, adapted to the white of the space: the white diffuser is (1, 1, 1) whatever the illuminant.
+// Maps XYZ to linear RGB. XYZ is measured under an illuminant that gives a perfect white diffuser
+// `illuminant_white`; it is adapted to the white of the space, so that the diffuser is (1, 1, 1) whatever the
+// illuminant.
 ColorMatrix xyz_to_rgb(const Vec3& illuminant_white, ColorSpace space);
 
-// Linear RGB of one space to another, adapted from white to white: (1, 1, 1) stays (1, 1, 1).
+// Maps linear RGB of one space to another, adapted from white to white: (1, 1, 1) stays (1, 1, 1).
 ColorMatrix rgb_to_rgb(ColorSpace from, ColorSpace to);
 
-// Y of a linear colour; that of (1, 1, 1) is 1.
+// Returns Y of a linear colour; that of (1, 1, 1) is 1.
 double luminance(const Rgb& color, ColorSpace space);
 
 // A colour with its negative components raised to zero. Raising adds light: `added` holds the amounts (all
@@ -64,13 +65,13 @@ struct GamutClip {
 };
 GamutClip clip_negative(const Rgb& color, ColorSpace space);
 
-// Clips many colours and keeps the account, for a report.
+// This clips many colours and keeps the account, for a report.
 struct ClipAccount {
-  std::int64_t colors = 0;     // seen
-  std::int64_t clipped = 0;    // of these with a negative component
-  double lowest = 0;           // most negative component
-  double luminance = 0;        // sum before clipping
-  double luminance_added = 0;  // sum by clipping
+  std::int64_t colors = 0;     // how many were seen
+  std::int64_t clipped = 0;    // how many had a negative component
+  double lowest = 0;           // the most negative component
+  double luminance = 0;        // the sum before clipping
+  double luminance_added = 0;  // the sum that clipping added
 
   Rgb clip(const Rgb& color, ColorSpace space);
 };

@@ -1,4 +1,5 @@
-// The one exception of Sunbeam. The message is complete: file, key or line, what was found, what is allowed.
+// Sunbeam throws this exception and no other of its own. The message is complete: it names the file, the key
+// or line, what was found and what is allowed.
 #pragma once
 
 #include <stdexcept>

@@ -1,5 +1,5 @@
-// The local shading frame: x = tangent, y = bitangent, z = shading normal. BSDFs see local directions only;
-// the tracer lays x along the direction of increasing u of the texture coordinates.
+// This frame takes world directions to the local ones that BSDFs see: x = tangent, y = bitangent, z = shading
+// normal. The tracer lays x along the direction of increasing u of the texture coordinates.
 #pragma once
 
 #include "sunbeam/core/vec.h"
@@ -9,7 +9,8 @@ namespace sunbeam::inline v1 {
 struct Frame {
   Vec3 tangent, bitangent, normal;
 
-  // Any right-handed frame around a unit `n` (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
+  // Returns some right-handed frame around a unit `n` (Duff et al. 2017, "Building an Orthonormal Basis,
+  // Revisited").
   static Frame from_normal(const Vec3& n) {
     const double sign = std::copysign(1.0, n.z);
     const double a = -1 / (sign + n.z);
@@ -17,8 +18,8 @@ struct Frame {
     return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
   }
 
-  // The right-handed frame around a unit `n` whose x axis is `t` projected into the tangent plane. `t` may
-  // have any length; if it is zero, not finite or parallel to `n`, this is from_normal(n).
+  // Returns the right-handed frame around a unit `n` whose x axis is `t` projected into the tangent plane.
+  // `t` may have any length; if it is zero, not finite or parallel to `n`, this is from_normal(n).
   static Frame from_normal_and_tangent(const Vec3& n, const Vec3& t) {
     const Vec3 projected = t - dot(t, n) * n;
     const double size2 = dot(projected, projected);

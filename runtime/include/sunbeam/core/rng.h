@@ -1,6 +1,6 @@
-// Random numbers from an explicit (seed, stream): the same pair gives the same numbers on every machine and
-// for every thread count. PCG32 (O'Neill 2014), state and increment mixed from the pair by SplitMix64 so that
-// neighbouring streams are unrelated.
+// This generator makes random numbers from an explicit (seed, stream): the same pair gives the same numbers
+// on every machine and for every thread count. It is PCG32 (O'Neill 2014); SplitMix64 mixes state and
+// increment from the pair, so that neighbouring streams are unrelated.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ class Rng {
     return (xorshifted >> rotation) | (xorshifted << ((32 - rotation) & 31));
   }
 
-  // Uniform in [0, 1), 32 random bits.
+  // Returns a uniform number in [0, 1) of 32 random bits.
   double uniform() { return next() * 0x1p-32; }
 
  private:

@@ -1,4 +1,4 @@
-// Three-component vectors (directions and points) and linear colours, in double precision.
+// This file holds directions, points and linear colours: three components each, in double precision.
 #pragma once
 
 #include <algorithm>
@@ -27,21 +27,21 @@ constexpr Vec3 cross(const Vec3& a, const Vec3& b) {
 inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
 inline Vec3 normalize(const Vec3& a) { return a / length(a); }
 
-// Mirror image of `w` about the axis `h`; both point away from the surface, |h| = 1.
+// Returns the mirror image of `w` about the axis `h`; both point away from the surface, |h| = 1.
 constexpr Vec3 reflect(const Vec3& w, const Vec3& h) { return 2 * dot(w, h) * h - w; }
 
-// Direction with polar angle `theta` from +z and azimuth `phi` from +x, radians.
+// Returns the direction with polar angle `theta` from +z and azimuth `phi` from +x, in radians.
 inline Vec3 spherical_direction(double theta, double phi) {
   return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
-// The same from the cosine of the polar angle.
+// Does the same from the cosine of the polar angle.
 inline Vec3 direction_from_cosine(double cos_theta, double phi) {
   const double sin_theta = std::sqrt(std::max(0.0, 1 - cos_theta * cos_theta));
   return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), cos_theta};
 }
 
-// Linear colour, or one value for each of the three wavelengths carried together.
+// A linear colour, or one value for each of the three wavelengths that are carried together.
 struct Rgb {
   double r = 0, g = 0, b = 0;
 

@@ -15,6 +15,7 @@ BINARY = os.environ["SUNBEAM_BINARY"]
 BUILD_DIR = pathlib.Path(os.environ["SUNBEAM_BUILD_DIR"])
 HAS_VDB = os.environ["SUNBEAM_BUILD_VDB"] == "1"
 CMAKE = os.environ["CMAKE_COMMAND"]
+NM = os.environ["CMAKE_NM"]
 EXAMPLE = pathlib.Path(__file__).resolve().parent / "example"
 
 # Packages that an embedder of plain tables may lack.
@@ -144,6 +145,22 @@ class Embedding(unittest.TestCase):
                     self.assertTrue(re.fullmatch(r"[a-z_0-9]+", include) or f"include/{include}" in names)
         for path in self.prefix.rglob("*.cmake"):
             self.assertNotIn(str(BUILD_DIR), path.read_text(), f"{path.name} points into the build folder")
+
+    def test_everything_bears_the_abi_version(self):
+        """Two versions of the library may meet in one program, so no name of theirs is the same."""
+        headers = [path.read_text() for path in (self.prefix / "include").rglob("*.h")]
+        spaces = {space for text in headers for space in re.findall(r"^namespace (sunbeam[^{]*) \{", text, re.MULTILINE)}
+        self.assertEqual(len(spaces), 1, spaces)
+        version = re.fullmatch(r"sunbeam::inline (v[0-9]+)", spaces.pop())
+        self.assertIsNotNone(version)
+        mangled = f"7sunbeam{len(version[1])}{version[1]}"
+        archives = sorted(self.prefix.rglob("libsunbeam_*.a"))
+        self.assertGreaterEqual(len(archives), 2)
+        for archive in archives:
+            names = [line.split()[-1] for line in run(NM, "--defined-only", archive).stdout.splitlines() if "7sunbeam" in line]
+            self.assertGreater(len(names), 10)
+            others = [name for name in names if "7sunbeam" in name.replace(mangled, "")]
+            self.assertEqual(others, [], archive.name)
 
 
 if __name__ == "__main__":

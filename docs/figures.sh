@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The pictures of docs/figures.md: bash docs/figures.sh [--size WIDTHxHEIGHT] [--spp N] [--only NAME] [--out FOLDER]
+# The pictures of docs/measured/figures.md: bash docs/figures.sh [--size WIDTHxHEIGHT] [--spp N] [--only NAME] [--out FOLDER]
 # --size and --spp replace each picture's (each cell's, in a montage) own; NAME: bands portrait fig1 fig4 fig5 fig6 spectrum sheets.
 # Needs build/release/bin/sunbeam (bash cmake/demo.sh), python3-pil and fonts-dejavu-core. Tables, .exr files and the numbers of the captions (numbers_fig5.md, numbers_fig6.md) stay in build/figures.
 set -euo pipefail

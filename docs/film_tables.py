@@ -1,5 +1,5 @@
 """film_tables.py SUNBEAM [--points N] [--only WORD ...] [--rows JSON]: errors and sizes of the default recipe's table
-over every kind of film, into performance.md.
+over every kind of film, into measured/performance.md.
 
 Each table is baked and held against the exact evaluator; --only takes rows whose name holds all words. Rows that the
 JSON file holds already are not measured again.
@@ -63,7 +63,7 @@ def row_of(name, row):
 def write_docs(rows):
     head = ["| film, transmission, path, spectrum | median | p99 | max | where: film, base IOR, absorption, angle | file | points |",
             "|---|---|---|---|---|---|---|"]
-    page = DOCS / "performance.md"
+    page = DOCS / "measured" / "performance.md"
     block = "\n".join(head + [row_of(name, row) for name, row in rows.items()])
     text, count = re.subn(r"(<!-- films -->\n).*?(\n<!-- end of films -->)", lambda m: m[1] + block + m[2],
                           page.read_text(), flags=re.S)

@@ -1,4 +1,4 @@
-"""plot_tables.py JSON: figures/tables.svg and the figures in performance.md from what bench_tables --json wrote."""
+"""plot_tables.py JSON: figures/tables.svg and the figures in measured/performance.md from what bench_tables --json wrote."""
 
 import html
 import json
@@ -128,12 +128,12 @@ def replace_between(page, name, content):
 def main():
     report = json.loads(pathlib.Path(sys.argv[1]).read_text())
     (DOCS / "figures" / "tables.svg").write_text(plot(report["tables"]))
-    page = (DOCS / "performance.md").read_text()
+    page = (DOCS / "measured" / "performance.md").read_text()
     page = replace_between(page, "tables", table_of(report))
     page = replace_between(page, "yardstick",
                            f"It took {report['yardstick_ns']:.1f} ns here, conversions by {report['half_conversion']}.")
     page = replace_between(page, "sample", sample_text(report["sample"]))
-    (DOCS / "performance.md").write_text(page)
+    (DOCS / "measured" / "performance.md").write_text(page)
 
 
 main()

@@ -1,6 +1,6 @@
 """The attributes and arrays of a table file, as {name: bytes}, without the library that wrote it.
 
-Names of attributes are those of docs/table_format.md without `sunbeam.`; what belongs to an array is `ARRAY/NAME`, and the
+Names of attributes are those of docs/reference/table_format.md without `sunbeam.`; what belongs to an array is `ARRAY/NAME`, and the
 values of an array are `array ARRAY` (in .vdb with what belongs to it).
 """
 

@@ -102,7 +102,7 @@ inline Floats4 sums(const Floats4& r, const Floats4& g, const Floats4& b) {
 
 // V: as many wavelengths as the instruction set has floats in a vector.
 template <class V>
-struct FilmLanes {
+struct FilmFloats {
   static constexpr std::size_t kWidth = sizeof(V) / sizeof(float);
 
   static V load(const float* from) {
@@ -178,7 +178,7 @@ struct FilmLanes {
 
 template <class V>
 constexpr FilmKernels film_kernels(const char* name) {
-  return {name, FilmLanes<V>::fold, FilmLanes<V>::transmittances};
+  return {name, FilmFloats<V>::fold, FilmFloats<V>::transmittances};
 }
 
 }  // namespace

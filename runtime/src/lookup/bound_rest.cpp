@@ -7,7 +7,7 @@ constexpr float kLeastCosine = 1e-4f;
 constexpr double kLeastShare = 0.3;    // of the channels' mean: a folded colour may pass through 0
 constexpr double kLeastScale = 1e-18;  // and a pigment let nothing through; its square is a float yet
 
-Rgb scale_of(const FactoredRest& rest, const FactoredRest::End& end) {
+Rgb scale_of(const WaveField& rest, const WaveField::End& end) {
   const Rgb arriving = rest.arriving(end);
   const double least = std::max(kLeastShare * mean(arriving), kLeastScale);
   return transform(arriving, [least](double a) { return std::max(a, least); });
@@ -15,7 +15,7 @@ Rgb scale_of(const FactoredRest& rest, const FactoredRest::End& end) {
 
 }  // namespace
 
-BoundRest::BoundRest(const FactoredRest& rest, Symmetry symmetry) {
+BoundRest::BoundRest(const WaveField& rest, Symmetry symmetry) {
   const bool isotropic = symmetry == Symmetry::isotropic;
   fine_ = isotropic ? Grid{kScaleCosines, 1, false} : Grid{129, 17, false};
   coarse_ = isotropic ? Grid{kRatioCosines, 1, true} : Grid{25, 7, true};
@@ -35,8 +35,8 @@ BoundRest::BoundRest(const FactoredRest& rest, Symmetry symmetry) {
   }
 }
 
-std::vector<FactoredRest::End> BoundRest::ends(const FactoredRest& rest, const Grid& grid) {
-  std::vector<FactoredRest::End> result;
+std::vector<WaveField::End> BoundRest::ends(const WaveField& rest, const Grid& grid) {
+  std::vector<WaveField::End> result;
   for (int c = 0; c < grid.cosines; ++c)
     for (int p = 0; p < grid.phis; ++p) {
       const double x = static_cast<double>(c) / (grid.cosines - 1);

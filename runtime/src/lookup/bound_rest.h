@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "runtime/src/base/color4.h"
-#include "runtime/src/lookup/factored_rest.h"
+#include "runtime/src/fit/wave_field.h"
 
 namespace sunbeam::inline v1 {
 
@@ -17,7 +17,7 @@ class BoundRest {
  public:
   static constexpr int kScaleCosines = 513, kRatioCosines = 65;  // of an isotropic table
 
-  BoundRest(const FactoredRest& rest, Symmetry symmetry);
+  BoundRest(const WaveField& rest, Symmetry symmetry);
 
   // A direction's cosine and its root, > 0.
   struct Cosine {
@@ -56,7 +56,7 @@ class BoundRest {
     }
   };
   static float quadrant(const Vec3& w);
-  static std::vector<FactoredRest::End> ends(const FactoredRest& rest, const Grid& grid);
+  static std::vector<WaveField::End> ends(const WaveField& rest, const Grid& grid);
   Color4 isotropic(const Cosine& o, const Cosine& i) const {
     const Color4 scale = sunbeam::lerp(scale_.data(), EvenPosition(o.cosine, fine_.cosines)) *
                          sunbeam::lerp(scale_.data(), EvenPosition(i.cosine, fine_.cosines));

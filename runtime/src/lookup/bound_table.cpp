@@ -62,8 +62,8 @@ void BoundTable::take_rest(const Table& table, Arithmetic arithmetic) {
           std::array{material_.film_thickness_nm, material_.base_ior, cosine_of(i)}));
     return;
   }
-  const FactoredRest factored(
-      table, material_, arithmetic == Arithmetic::fastest ? best_film_kernels() : baseline_film_kernels());
+  const WaveField factored(table, material_,
+                           arithmetic == Arithmetic::fastest ? best_film_kernels() : baseline_film_kernels());
   std::vector<float> cosines(kFilmNodes);
   std::vector<FloatRgb> folded(kFilmNodes);
   for (int i = 0; i < kFilmNodes; ++i) cosines[i] = static_cast<float>(cosine_of(i));
@@ -139,10 +139,10 @@ Rgb BoundTable::rest_albedo(const Vec3& wo) const {
 BoundTable::Moments BoundTable::first_moments(const Vec3& wo, std::size_t cell, int nodes) const {
   Moments sum;
   for (int k = 0; k < nodes * nodes; ++k) {
-    const double turn = static_cast<double>(cell / FirstSampler::kHeights) + (k % nodes + 0.5) / nodes;
-    const double height = static_cast<double>(cell % FirstSampler::kHeights) + (k / nodes + 0.5) / nodes;
+    const double turn = static_cast<double>(cell / FacetCells::kHeights) + (k % nodes + 0.5) / nodes;
+    const double height = static_cast<double>(cell % FacetCells::kHeights) + (k / nodes + 0.5) / nodes;
     const Vec3 wi =
-        normals_.sample_mirrored(wo, {turn / (2 * FirstSampler::kTurns), height / FirstSampler::kHeights});
+        normals_.sample_mirrored(wo, {turn / (2 * FacetCells::kTurns), height / FacetCells::kHeights});
     sum.least_cosine = std::min(sum.least_cosine, wi.z);
     if (wi.z <= 0) continue;
     const Vec3 h = normalize(wo + wi);
@@ -161,13 +161,13 @@ double BoundTable::add_first_row(const Vec3& wo) {
   constexpr double kHorizon = 0.1;
   constexpr double kLeastShare =
       0.005;  // of the mean: neighbouring viewers may have light where this has none
-  std::vector<double> power(FirstSampler::kCells);
+  std::vector<double> power(FacetCells::kCells);
   double albedo = 0;
   for (std::size_t cell = 0; cell < power.size(); ++cell) {
     Moments moments = first_moments(wo, cell, kNodes);
     if (moments.least_cosine < kHorizon) moments = first_moments(wo, cell, kHorizonNodes);
     power[cell] = std::sqrt(moments.second);
-    albedo += moments.first / FirstSampler::kCells;
+    albedo += moments.first / FacetCells::kCells;
   }
   for (double& p : power) p = std::max(p, kLeastShare * albedo);
   first_sampler_.add_row(power);
@@ -176,11 +176,11 @@ double BoundTable::add_first_row(const Vec3& wo) {
 
 // Adds the row of `viewers`, one an azimuth, and returns the albedo.
 double BoundTable::add_rest_row(std::span<const Vec3> viewers) {
-  std::vector<double> density(RestSampler::kNodes);
+  std::vector<double> density(CosineRows::kNodes);
   for (const Vec3& wo : viewers)
     visit_azimuth_mean(wo, [&](const auto& mean_rest) {
-      for (int node = 0; node < RestSampler::kNodes; ++node) {
-        const double root = RestSampler::root_of_node(node), cos_i = cosine_of_root(root);
+      for (int node = 0; node < CosineRows::kNodes; ++node) {
+        const double root = CosineRows::root_of_node(node), cos_i = cosine_of_root(root);
         // f cos dwi = f cos 2 pi dcos, dcos = 2 root droot.
         density[static_cast<std::size_t>(node)] +=
             std::max(0.0, mean(mean_rest(cos_i)) * cos_i * 4 * kPi * root) /
@@ -224,7 +224,7 @@ void BoundTable::prepare_pairs() {
       const auto at = [](int pair, int nodes) {
         return EvenPosition(static_cast<float>(pair) / (kPairs - 1), nodes);
       };
-      node[3] = rest_sampler_.density(at(o, kRows), at(i, RestSampler::kNodes));
+      node[3] = rest_sampler_.density(at(o, kRows), at(i, CosineRows::kNodes));
     }
 }
 
@@ -260,7 +260,7 @@ SUNBEAM_ALWAYS_INLINE std::array<BoundTable::Parts, kLights> BoundTable::parts(
   const float chance = viewer.first_chance();
   const Color4 rest_pdf = (1 - chance) * kPerSolidAngle / lights.root,  // times the density over the root
       first_pdf = chance * viewer.facets.pdf_per_d * lights.d;
-  const Ints4 cells = has_cells() ? FirstSampler::cells(facets_.u, viewer.facets, lights) : Ints4{};
+  const Ints4 cells = has_cells() ? FacetCells::cells(facets_.u, viewer.facets, lights) : Ints4{};
   const Color4* row = pairs_.data() + viewer.pairs.lower * kPairs;
 
   std::array<Parts, kLights> result;
@@ -288,9 +288,9 @@ EvalPdf BoundTable::eval_pdf(const Vec3& wo, const Vec3& wi) const {
   return parts<1>(Viewer(*this, wo), wo, {wi})[0].eval_pdf();
 }
 
-// Draws from FirstSampler's square, or evenly.
+// Draws from FacetCells's square, or evenly.
 inline Vec3 BoundTable::draw_first(const Viewer& viewer, int row, const Vec3& wo, Rng& rng) const {
-  const auto at = has_cells() ? first_sampler_.sample(row, rng) : FirstSampler::even(rng);
+  const auto at = has_cells() ? first_sampler_.sample(row, rng) : FacetCells::even(rng);
   return viewer.facets.mirrored(facets_, wo, at.turn, at.height);
 }
 

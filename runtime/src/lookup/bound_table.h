@@ -84,8 +84,8 @@ class BoundTable {
                           const std::function<void(const std::function<Rgb(double)>&)>& visit) const;
   bool has_cells() const { return facets_.u2 == facets_.v2; }
 
-  static constexpr int kPairs = BoundRest::kRatioCosines, kRows = FirstSampler::kRows;
-  static_assert((kPairs - 1) % (kRows - 1) == 0 && (kPairs - 1) % (RestSampler::kNodes - 1) == 0,
+  static constexpr int kPairs = BoundRest::kRatioCosines, kRows = FacetCells::kRows;
+  static_assert((kPairs - 1) % (kRows - 1) == 0 && (kPairs - 1) % (CosineRows::kNodes - 1) == 0,
                 "what is linear between rows and nodes of sampling must be so between pairs");
 
   Material material_;
@@ -101,10 +101,10 @@ class BoundTable {
   std::vector<Color4> ends_;
   std::vector<Color4> film_;  // over even cosines
   // (root of the viewer's cosine, root of the light's), both even: the ratio of an isotropic factored rest,
-  // and in the last lane RestSampler's density.
+  // and in the last lane CosineRows's density.
   std::vector<Color4> pairs_;
-  RestSampler rest_sampler_;
-  FirstSampler first_sampler_;  // an isotropic rough film's
+  CosineRows rest_sampler_;
+  FacetCells first_sampler_;  // an isotropic rough film's
 };
 
 }  // namespace sunbeam::inline v1

@@ -12,7 +12,7 @@
 
 namespace sunbeam::inline v1 {
 
-class RestSampler {
+class CosineRows {
  public:
   static constexpr int kNodes = 33;  // of lights
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "runtime/src/base/color4.h"
-#include "runtime/src/lookup/bound_axis.h"
+#include "runtime/src/base/bound_axis.h"
 #include "sunbeam/detail/angles.h"
 #include "sunbeam/detail/nd_array.h"
 

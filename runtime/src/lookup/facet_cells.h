@@ -15,13 +15,13 @@
 
 namespace sunbeam::inline v1 {
 
-class FirstSampler {
+class FacetCells {
  public:
   static constexpr int kRows = 17;
   static constexpr int kTurns = 16, kHeights = 32, kCells = kTurns * kHeights;
   static_assert(2 * kTurns == FloatTurn::kSteps);
 
-  FirstSampler() : density_(kCells * kStride) {}
+  FacetCells() : density_(kCells * kStride) {}
 
   // Of cells, turn by turn; any unit, >= 0. In the order of viewers.
   void add_row(std::span<const double> power) {
@@ -84,7 +84,7 @@ class FirstSampler {
   std::vector<float> density_;  // (cell, viewer), so that both viewers are neighbours
 };
 
-inline const std::array<float, FirstSampler::kTurns / 2 - 1> FirstSampler::kEdges = [] {
+inline const std::array<float, FacetCells::kTurns / 2 - 1> FacetCells::kEdges = [] {
   std::array<float, kTurns / 2 - 1> edges;
   for (std::size_t k = 0; k < edges.size(); ++k)
     edges[k] = static_cast<float>(square(std::cos(kPi * static_cast<double>(k + 1) / kTurns)));

@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "runtime/src/lookup/textured_exchange.h"
-#include "runtime/src/lookup/textured_factor.h"
-#include "runtime/src/lookup/textured_shares.h"
+#include "runtime/src/fit/textured_exchange.h"
+#include "runtime/src/fit/textured_factor.h"
+#include "runtime/src/fit/textured_shares.h"
 
 namespace sunbeam::inline v1 {
 namespace {

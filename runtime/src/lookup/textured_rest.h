@@ -6,7 +6,7 @@
 
 #include "runtime/src/base/exp4.h"
 #include "runtime/src/film/film_spectrum.h"
-#include "runtime/src/lookup/textured_grid.h"
+#include "runtime/src/fit/textured_grid.h"
 #include "sunbeam/detail/textured_point.h"
 
 namespace sunbeam::inline v1 {

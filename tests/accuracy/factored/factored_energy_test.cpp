@@ -6,12 +6,12 @@
 //     albedo(w) = first(w) + 2 pi Int rest(w, c) c dc.
 // A folded albedo is sum_k weight_k albedo_k. The weights' means over channels are not negative and add up to
 // 1 (asserted), so that no mean over channels exceeds the largest albedo of a wavelength; and the channels of
-// rgb3 are wavelengths. FactoredRest at one wavelength takes microseconds where a table takes milliseconds to
+// rgb3 are wavelengths. WaveField at one wavelength takes microseconds where a table takes milliseconds to
 // bind: it stands for the many, and some tables are bound whole.
 
 #include "bake/base/parallel_tasks.h"
 #include "bake/optics/thin_film.h"
-#include "runtime/src/lookup/factored_rest.h"
+#include "runtime/src/fit/wave_field.h"
 #include "sunbeam/detail/ggx.h"
 #include "tests/accuracy/factored/support.h"
 #include "tests/support/quadrature.h"
@@ -74,7 +74,7 @@ class Monochromatic {
     const double nm = lerp(rng.uniform(), shortest_, longest_);
     table_.factors.wavelengths = {{nm}, {1}, {1}, {Rgb(1)}};
     const Material material = parameters.applied_to(table_.material);
-    const FactoredRest rest(table_, material);
+    const WaveField rest(table_, material);
     const double cosine = lerp(rng.uniform(), kLeastCosine, 1);
     const auto row = rest.row(rest.end(cosine, 0));
     const double returned = test::integrate(

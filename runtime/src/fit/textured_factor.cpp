@@ -1,4 +1,4 @@
-#include "runtime/src/lookup/textured_factor.h"
+#include "runtime/src/fit/textured_factor.h"
 
 #include <cmath>
 

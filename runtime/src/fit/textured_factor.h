@@ -1,8 +1,8 @@
 // B of a textured table (sunbeam/textured_table.h), folded from shares, and the nodes of L that stand for it.
 #pragma once
 
+#include "runtime/src/fit/textured_shares.h"
 #include "runtime/src/lookup/textured_rest.h"
-#include "runtime/src/lookup/textured_shares.h"
 
 namespace sunbeam::inline v1 {
 

@@ -1,4 +1,4 @@
-#include "runtime/src/lookup/textured_exchange.h"
+#include "runtime/src/fit/textured_exchange.h"
 
 #include <cmath>
 
@@ -116,7 +116,7 @@ void TexturedExchange::add_visits(int d, std::size_t k, const float* share, std:
 }
 
 // No more than one leaves the film of each unit of power that arrives at the base; else by how much more,
-// as FactoredRest limits it. Simpson's rule over the root: cos dw = 4 pi u^3 du.
+// as WaveField limits it. Simpson's rule over the root: cos dw = 4 pi u^3 du.
 double TexturedExchange::most_leaving(const std::vector<float>& visits, const float* share,
                                       double gain) const {
   constexpr double kLeastViewer = 0.125;

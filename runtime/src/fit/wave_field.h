@@ -9,11 +9,10 @@
 
 namespace sunbeam::inline v1 {
 
-class FactoredRest {
+class WaveField {
  public:
   // `material` is that of the table with the parameters of the point, which lie in the grid.
-  FactoredRest(const Table& table, const Material& material,
-               const FilmKernels& kernels = best_film_kernels());
+  WaveField(const Table& table, const Material& material, const FilmKernels& kernels = best_film_kernels());
 
   // What the rest needs to know of one direction.
   struct End {

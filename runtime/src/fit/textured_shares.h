@@ -3,8 +3,8 @@
 #pragma once
 
 #include "runtime/src/film/film_spectrum.h"
-#include "runtime/src/lookup/order_stencil.h"
-#include "runtime/src/lookup/textured_grid.h"
+#include "runtime/src/fit/order_stencil.h"
+#include "runtime/src/fit/textured_grid.h"
 
 namespace sunbeam::inline v1 {
 

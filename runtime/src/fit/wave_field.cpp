@@ -1,4 +1,4 @@
-#include "runtime/src/lookup/factored_rest.h"
+#include "runtime/src/fit/wave_field.h"
 
 namespace sunbeam::inline v1 {
 namespace {
@@ -14,7 +14,7 @@ double cosine_at(std::size_t k) { return (static_cast<double>(k / 4) + kNode[k %
 
 }  // namespace
 
-FactoredRest::FactoredRest(const Table& table, const Material& material, const FilmKernels& kernels)
+WaveField::WaveField(const Table& table, const Material& material, const FilmKernels& kernels)
     : material_(material),
       wavelengths_(table.factors.wavelengths),
       film_(wavelengths_, material.exterior_ior, material.film_ior, kernels) {
@@ -33,7 +33,7 @@ FactoredRest::FactoredRest(const Table& table, const Material& material, const F
 // Of each unit of power that arrives at the base, whatever its direction, no more than one leaves the film.
 // Interpolation does not know that, and over a bright base errors of a per mille in what the film returns
 // become a per cent. Path "sum" forgets the direction, so that one is enough.
-void FactoredRest::limit_gain(bool is_sum) {
+void WaveField::limit_gain(bool is_sum) {
   std::vector<End> to;
   for (std::size_t k = 0; k < 4 * kPanels; ++k) to.push_back(end(cosine_at(k), 0));
   std::vector<double> most(depth_.size(), 1);
@@ -45,7 +45,7 @@ void FactoredRest::limit_gain(bool is_sum) {
 }
 
 // Int rest cos / A(from) at each wavelength.
-std::vector<double> FactoredRest::leaving(const Row& from, std::span<const End> to) const {
+std::vector<double> WaveField::leaving(const Row& from, std::span<const End> to) const {
   std::vector<double> sum(depth_.size());
   for (std::size_t n = 0; n < to.size(); ++n)
     for (std::size_t k = 0; k < sum.size(); ++k)
@@ -55,7 +55,7 @@ std::vector<double> FactoredRest::leaving(const Row& from, std::span<const End> 
 }
 
 // One slice for all wavelengths of the same optical depth.
-void FactoredRest::take_arrival(const Factors& factors) {
+void WaveField::take_arrival(const Factors& factors) {
   for (std::size_t k = 0; k < depth_.size(); ++k) {
     const bool is_new = k == 0 || (depth_[k] != depth_[0] && factors.arrival.axes()[1].size() > 1);
     arrival_.push_back(is_new ? factors.arrival.slice(std::array{material_.base_ior, depth_[k]})
@@ -63,7 +63,7 @@ void FactoredRest::take_arrival(const Factors& factors) {
   }
 }
 
-void FactoredRest::take_gain(const Factors& factors) {
+void WaveField::take_gain(const Factors& factors) {
   for (std::size_t k = 0; k < depth_.size(); ++k) {
     const double order = fringe_order(material_, 1) * material_.film_thickness_nm / wavelengths_.nm[k];
     const double returned = factors.returned.interpolate(std::array{material_.base_ior, depth_[k], order}).r;
@@ -71,7 +71,7 @@ void FactoredRest::take_gain(const Factors& factors) {
   }
 }
 
-void FactoredRest::take_exchange(const Factors& factors) {
+void WaveField::take_exchange(const Factors& factors) {
   ends_ = {factors.exchange.axes()[4], factors.exchange.axes()[5]};
   for (std::size_t k = 0; k < depth_.size(); ++k) {
     const double order = fringe_order(material_, 1) * material_.film_thickness_nm / wavelengths_.nm[k];
@@ -81,7 +81,7 @@ void FactoredRest::take_exchange(const Factors& factors) {
   }
 }
 
-FactoredRest::End FactoredRest::end(double cosine, double phi) const {
+WaveField::End WaveField::end(double cosine, double phi) const {
   End end;
   end.below = material_.cosine_below(cosine);
   const double per_cosine = 1 / arrival_cosine(material_, cosine);
@@ -107,7 +107,7 @@ FactoredRest::End FactoredRest::end(double cosine, double phi) const {
   return end;
 }
 
-FactoredRest::Row FactoredRest::row(const End& i) const {
+WaveField::Row WaveField::row(const End& i) const {
   Row row{i.below, i.share, {}};
   const std::size_t nodes = exchange_.empty() ? 0 : ends_[0].size() * ends_[1].size();
   row.exchange.resize(nodes * depth_.size());
@@ -118,7 +118,7 @@ FactoredRest::Row FactoredRest::row(const End& i) const {
   return row;
 }
 
-double FactoredRest::visits(const Row& i, const End& o, std::size_t k) const {
+double WaveField::visits(const Row& i, const End& o, std::size_t k) const {
   if (i.exchange.empty()) return 1;
   const std::size_t nodes = i.exchange.size() / depth_.size();
   double sum = one_visit_of_product(depth_[k], i.below, o.below);
@@ -126,7 +126,7 @@ double FactoredRest::visits(const Row& i, const End& o, std::size_t k) const {
   return sum;
 }
 
-Rgb FactoredRest::rest(const Row& i, const End& o) const {
+Rgb WaveField::rest(const Row& i, const End& o) const {
   Rgb sum;
   for (std::size_t k = 0; k < depth_.size(); ++k)
     sum += gain_[k] * i.share[k] * o.share[k] * visits(i, o, k) * wavelengths_.weight[k];

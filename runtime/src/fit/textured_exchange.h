@@ -2,7 +2,7 @@
 // one visit of the base aside, at the nodes of pairs.
 #pragma once
 
-#include "runtime/src/lookup/textured_factor.h"
+#include "runtime/src/fit/textured_factor.h"
 
 namespace sunbeam::inline v1 {
 

@@ -1,4 +1,4 @@
-#include "runtime/src/lookup/bound_axis.h"
+#include "runtime/src/base/bound_axis.h"
 
 #include <algorithm>
 

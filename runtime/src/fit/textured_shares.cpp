@@ -1,4 +1,4 @@
-#include "runtime/src/lookup/textured_shares.h"
+#include "runtime/src/fit/textured_shares.h"
 
 #include "runtime/src/base/exp4.h"
 #include "sunbeam/detail/textured_point.h"

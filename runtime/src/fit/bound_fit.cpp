@@ -1,0 +1,74 @@
+#include "runtime/src/fit/bound_fit.h"
+
+#include <functional>
+
+namespace sunbeam::inline v1 {
+namespace {
+
+constexpr double kLeastCosine = 1e-4;
+constexpr double kLeastShare = 0.3;    // of the channels' mean: a folded colour may pass through 0
+constexpr double kLeastScale = 1e-18;  // and a pigment let nothing through; its square is a float yet
+
+// Directions at cosines that are even, or whose roots are, and at even azimuths of a quadrant.
+struct Grid {
+  int cosines, phis;
+  bool by_root;
+};
+
+std::vector<WaveField::End> ends_of(const WaveField& waves, const Grid& grid) {
+  std::vector<WaveField::End> ends;
+  for (int c = 0; c < grid.cosines; ++c)
+    for (int p = 0; p < grid.phis; ++p) {
+      const double x = static_cast<double>(c) / (grid.cosines - 1);
+      const double cosine = std::max(grid.by_root ? x * x : x, kLeastCosine);
+      ends.push_back(waves.end(cosine, grid.phis == 1 ? 0 : kPi / 2 * p / (grid.phis - 1)));
+    }
+  return ends;
+}
+
+Rgb scale_of(const WaveField& waves, const WaveField::End& end) {
+  const Rgb arriving = waves.arriving(end);
+  const double least = std::max(kLeastShare * mean(arriving), kLeastScale);
+  return transform(arriving, [least](double a) { return std::max(a, least); });
+}
+
+// S at each node, to the front of `scales`.
+void find_scales(const WaveField& waves, const Grid& grid, std::vector<Color4>& scales) {
+  const auto ends = ends_of(waves, grid);
+  for (std::size_t k = 0; k < ends.size(); ++k) scales[k] = to_color4(scale_of(waves, ends[k]));
+}
+
+// Q at each pair of nodes, to the front of `ratios`; both directions may be exchanged.
+void find_ratios(const WaveField& waves, const Grid& grid, std::vector<Color4>& ratios) {
+  const auto nodes = ends_of(waves, grid);
+  std::vector<Rgb> scales;
+  for (const auto& end : nodes) scales.push_back(scale_of(waves, end));
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto row = waves.row(nodes[i]);
+    for (std::size_t o = 0; o <= i; ++o) {
+      const Rgb ratio = waves.rest(row, nodes[o]) / (scales[i] * scales[o]);
+      ratios[i * nodes.size() + o] = ratios[o * nodes.size() + i] = to_color4(ratio);
+    }
+  }
+}
+
+}  // namespace
+
+Separable fit_isotropic(const WaveField& waves) {
+  Separable fit;
+  find_scales(waves, {Separable::kScaleCosines, 1, false}, fit.scales);
+  find_ratios(waves, {Separable::kRatioRoots, 1, true}, fit.ratios);
+  return fit;
+}
+
+AnisotropicSeparable fit_anisotropic(const WaveField& waves) {
+  using Fit = AnisotropicSeparable;
+  Fit fit;
+  fit.scales.resize(Fit::kScaleCosines * Fit::kScaleAzimuths);
+  fit.ratios.resize(Fit::kRatioNodes * Fit::kRatioNodes);
+  find_scales(waves, {Fit::kScaleCosines, Fit::kScaleAzimuths, false}, fit.scales);
+  find_ratios(waves, {Fit::kRatioRoots, Fit::kRatioAzimuths, true}, fit.ratios);
+  return fit;
+}
+
+}  // namespace sunbeam::inline v1

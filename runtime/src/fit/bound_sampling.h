@@ -1,0 +1,22 @@
+// Makes what BoundTable samples with, from the values of a table at one parameter point. Densities follow the
+// mean over channels, and over the viewer's azimuth.
+#pragma once
+
+#include "runtime/src/lookup/bound_values.h"
+#include "runtime/src/lookup/cosine_rows.h"
+#include "runtime/src/lookup/facet_cells.h"
+
+namespace sunbeam::inline v1 {
+
+struct BoundSampling {
+  explicit BoundSampling(const BoundValues& values);
+
+  // Viewers at even roots of the cosine, as many as rows.
+  static constexpr int kViewers = FacetCells::kRows;
+
+  std::vector<float> first_chances;  // of sampling the first surface, for each viewer
+  CosineRows rest;
+  FacetCells first;  // empty but for an isotropic rough film
+};
+
+}  // namespace sunbeam::inline v1

@@ -1,0 +1,114 @@
+#include "runtime/src/lookup/bound_values.h"
+
+#include "runtime/src/film/film_spectrum.h"
+#include "runtime/src/fit/bound_fit.h"
+#include "sunbeam/detail/ggx.h"
+#include "sunbeam/detail/text.h"
+
+namespace sunbeam::inline v1 {
+namespace {
+
+constexpr int kAlbedoBins = 32;
+constexpr int kRestAzimuths = 8;  // of an anisotropic factored table, in a quadrant
+
+double even_cosine(int node) { return static_cast<double>(node) / (BoundValues::kFilmCosines - 1); }
+
+std::vector<Color4> folded_film(const FilmSpectrum& film, const Material& material) {
+  std::vector<float> cosines;
+  for (int k = 0; k < BoundValues::kFilmCosines; ++k) cosines.push_back(static_cast<float>(even_cosine(k)));
+  std::vector<FloatRgb> folded(cosines.size());
+  film.fold(material.film_thickness_nm, material.base_ior, cosines, folded.data());
+  std::vector<Color4> nodes;
+  for (const FloatRgb& rgb : folded) nodes.push_back(Color4{rgb.r, rgb.g, rgb.b, 0});
+  nodes.push_back(Color4{});
+  return nodes;
+}
+
+std::vector<Color4> interpolated_film(const NdArray& reflectance, const Material& material) {
+  std::vector<Color4> nodes;
+  for (int k = 0; k < BoundValues::kFilmCosines; ++k)
+    nodes.push_back(to_color4(
+        reflectance.interpolate(std::array{material.film_thickness_nm, material.base_ior, even_cosine(k)})));
+  nodes.push_back(Color4{});
+  return nodes;
+}
+
+}  // namespace
+
+BoundValues::BoundValues(const Table& table, const Material& material_at, Arithmetic arithmetic)
+    : material(material_at), symmetry(table.symmetry) {
+  if (!table.is_factored()) {
+    other.emplace<DenseRest>(table, material);
+    film = interpolated_film(table.film_reflectance, material);
+    return;
+  }
+  const WaveField waves(table, material,
+                        arithmetic == Arithmetic::fastest ? best_film_kernels() : baseline_film_kernels());
+  film = folded_film(waves.film(), material);
+  if (symmetry == Symmetry::isotropic)
+    separable = fit_isotropic(waves);
+  else
+    other = fit_anisotropic(waves);
+  if (const auto known = table.info.find("noise"); known != table.info.end())
+    parse_number(known->second, noise);
+}
+
+Rgb BoundValues::other_rest(const Vec3& wo, const Vec3& wi) const {
+  if (const auto* factored = std::get_if<AnisotropicSeparable>(&other)) return to_rgb(factored->rest(wo, wi));
+  return std::get<DenseRest>(other)(wo, wi);
+}
+
+Rgb BoundValues::film_reflectance(double cosine) const {
+  return to_rgb(
+      lerp(film.data(), EvenPosition(static_cast<float>(std::clamp(cosine, 0.0, 1.0)), kFilmCosines)));
+}
+
+void BoundValues::visit_azimuth_mean(const Vec3& wo,
+                                     const std::function<void(const OfCosine&)>& visit) const {
+  if (const auto* dense = std::get_if<DenseRest>(&other)) return visit(DenseRest::AzimuthMean(*dense, wo));
+  if (is_separable())
+    return visit([&](double cos_i) {
+      return to_rgb(separable.rest(static_cast<float>(wo.z), static_cast<float>(cos_i)));
+    });
+  visit([&](double cos_i) {
+    Rgb sum;
+    for (int a = 0; a < kRestAzimuths; ++a)
+      sum += other_rest(wo, direction_from_cosine(cos_i, kPi / 2 * (a + 0.5) / kRestAzimuths));
+    return sum / kRestAzimuths;
+  });
+}
+
+// By midpoints in the unit square of visible normals, which turns the integral into a mean of R G2/G1.
+Rgb BoundValues::first_albedo(const Vec3& wo, int nodes) const {
+  if (material.is_smooth()) return film_reflectance(wo.z);
+  const Ggx normals(material.roughness);
+  Rgb sum;
+  for (int i = 0; i < nodes; ++i)
+    for (int j = 0; j < nodes; ++j) {
+      const double turn = kPi * (j + 0.5) / nodes;  // roots at both ends of the height become smooth
+      const Vec3 h = normals.sample_visible(wo, {(i + 0.5) / nodes, (1 - std::cos(turn)) / 2});
+      const Vec3 wi = reflect(wo, h);
+      if (wi.z > 0)
+        sum += film_reflectance(dot(wo, h)) * (normals.g2_over_g1(wo, wi) * kPi / 2 * std::sin(turn));
+    }
+  return sum / (nodes * nodes);
+}
+
+// By four-point Gauss-Legendre in each bin of cos(theta_i).
+Rgb BoundValues::rest_albedo(const Vec3& wo) const {
+  constexpr double kNode[] = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
+  constexpr double kWeight[] = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
+                                0.1739274225687269};
+  Rgb total;
+  if (wo.z <= 0) return total;
+  visit_azimuth_mean(wo, [&](const OfCosine& mean_rest) {
+    for (int bin = 0; bin < kAlbedoBins; ++bin)
+      for (int g = 0; g < 4; ++g) {
+        const double cos_i = (bin + kNode[g]) / kAlbedoBins;
+        total += mean_rest(cos_i) * (kWeight[g] * cos_i * 2 * kPi / kAlbedoBins);
+      }
+  });
+  return total;
+}
+
+}  // namespace sunbeam::inline v1

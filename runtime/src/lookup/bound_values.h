@@ -1,0 +1,46 @@
+// The values of a table at one parameter point: what the film reflects, the rest, and the albedos of both.
+// BoundTable looks directions up in them and samples them.
+#pragma once
+
+#include <functional>
+#include <variant>
+#include <vector>
+
+#include "runtime/src/lookup/dense_rest.h"
+#include "runtime/src/lookup/separable.h"
+#include "sunbeam/table.h"
+
+namespace sunbeam::inline v1 {
+
+struct BoundValues {
+  // `material` is that of the table with the parameters of the point, which lie in the grid.
+  BoundValues(const Table& table, const Material& material, Arithmetic arithmetic);
+
+  static constexpr int kFilmCosines = 1025;
+
+  // An isotropic factored table's rest is in `separable`, and the variant is empty.
+  bool is_separable() const { return std::holds_alternative<std::monostate>(other); }
+
+  // 1/sr, of directions above the horizon, in a table that is not separable.
+  Rgb other_rest(const Vec3& wo, const Vec3& wi) const;
+  Rgb film_reflectance(double cosine) const;
+
+  // The mean of the rest over the azimuth of wi, a function of the cosine of wi, is what `visit` is called
+  // with.
+  using OfCosine = std::function<Rgb(double cos_i)>;
+  void visit_azimuth_mean(const Vec3& wo, const std::function<void(const OfCosine&)>& visit) const;
+
+  // Int f_first cos dwi, the Dirac of a smooth film included, with `nodes` visible normals each way.
+  Rgb first_albedo(const Vec3& wo, int nodes) const;
+  // Int f_rest cos dwi.
+  Rgb rest_albedo(const Vec3& wo) const;
+
+  Material material;
+  Symmetry symmetry;
+  double noise = 0;          // relative standard error of a factored rest
+  std::vector<Color4> film;  // reflectance at even cosines, and one node more
+  Separable separable;
+  std::variant<std::monostate, DenseRest, AnisotropicSeparable> other;
+};
+
+}  // namespace sunbeam::inline v1

@@ -1,0 +1,59 @@
+// The rest of a factored table at one parameter point, for directions w = (c, phi), c the cosine:
+//
+//   rest(wi, wo) = S(wi) S(wo) Q(wi, wo)     1/sr, each colour channel apart
+//
+// S is the share of a direction's light that reaches the base, folded into colours. It holds the fringes and
+// the pigment's decay and lies on a fine grid, even in c. Q is what is left: the gain of the base, its
+// visits, and what is lost by folding both directions apart. It is smooth and lies on a coarse grid, even in
+// the root of c. An anisotropic film has azimuths too, folded into the first quadrant; its grids are even in
+// them. All is linear between nodes.
+//
+// bake/factored/arrival.h and its neighbours make the factors, sunbeam/detail/factors.h stores them, and
+// runtime/src/fit/bound_fit.h makes S and Q of them.
+#pragma once
+
+#include <vector>
+
+#include "runtime/src/base/color4.h"
+
+namespace sunbeam::inline v1 {
+
+// The equation above, of two values of S and one of Q.
+inline Color4 separable_rest(const Color4& scale_o, const Color4& scale_i, const Color4& ratio) {
+  return scale_o * scale_i * ratio;
+}
+
+// S and Q of an isotropic film. A place beyond the last node, of weight 0, may be read. The last lanes are
+// the owner's: BoundTable keeps there what its sampling looks up at the same places.
+struct Separable {
+  static constexpr int kScaleCosines = 513, kRatioRoots = 65;
+
+  Color4 scale(const EvenPosition& cosine) const { return lerp(scales.data(), cosine); }
+  Color4 ratio(const EvenPosition& root_o, const EvenPosition& root_i) const {
+    const Color4* row = ratios.data() + root_o.lower * kRatioRoots;
+    const Color4 low = lerp(row, root_i), high = lerp(row + kRatioRoots, root_i);
+    return low + root_o.upper_weight * (high - low);
+  }
+  // 1/sr, of two cosines in (0, 1].
+  Color4 rest(float cos_o, float cos_i) const;
+
+  std::vector<Color4> scales = std::vector<Color4>(kScaleCosines + 1);                    // S
+  std::vector<Color4> ratios = std::vector<Color4>((kRatioRoots + 1) * kRatioRoots + 1);  // Q at (wo, wi)
+};
+
+// S and Q of an anisotropic film, at (c, phi) and (wo, wi).
+struct AnisotropicSeparable {
+  static constexpr int kScaleCosines = 129, kScaleAzimuths = 17;
+  static constexpr int kRatioRoots = 25, kRatioAzimuths = 7;
+  static constexpr int kRatioNodes = kRatioRoots * kRatioAzimuths;
+
+  // 1/sr, for directions above the horizon.
+  Color4 rest(const Vec3& wo, const Vec3& wi) const;
+
+  std::vector<Color4> scales, ratios;
+
+ private:
+  Color4 scale(float cosine, float phi) const;
+};
+
+}  // namespace sunbeam::inline v1

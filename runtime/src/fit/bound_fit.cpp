@@ -15,34 +15,34 @@ struct Grid {
   bool by_root;
 };
 
-std::vector<WaveField::End> ends_of(const WaveField& waves, const Grid& grid) {
-  std::vector<WaveField::End> ends;
+std::vector<BoundWaves::Direction> directions_of(const BoundWaves& waves, const Grid& grid) {
+  std::vector<BoundWaves::Direction> directions;
   for (int c = 0; c < grid.cosines; ++c)
     for (int p = 0; p < grid.phis; ++p) {
       const double x = static_cast<double>(c) / (grid.cosines - 1);
       const double cosine = std::max(grid.by_root ? x * x : x, kLeastCosine);
-      ends.push_back(waves.end(cosine, grid.phis == 1 ? 0 : kPi / 2 * p / (grid.phis - 1)));
+      directions.push_back(waves.direction(cosine, grid.phis == 1 ? 0 : kPi / 2 * p / (grid.phis - 1)));
     }
-  return ends;
+  return directions;
 }
 
-Rgb scale_of(const WaveField& waves, const WaveField::End& end) {
-  const Rgb arriving = waves.arriving(end);
+Rgb scale_of(const BoundWaves& waves, const BoundWaves::Direction& w) {
+  const Rgb arriving = waves.arriving(w);
   const double least = std::max(kLeastShare * mean(arriving), kLeastScale);
   return transform(arriving, [least](double a) { return std::max(a, least); });
 }
 
 // S at each node, to the front of `scales`.
-void find_scales(const WaveField& waves, const Grid& grid, std::vector<Color4>& scales) {
-  const auto ends = ends_of(waves, grid);
-  for (std::size_t k = 0; k < ends.size(); ++k) scales[k] = to_color4(scale_of(waves, ends[k]));
+void find_scales(const BoundWaves& waves, const Grid& grid, std::vector<Color4>& scales) {
+  const auto directions = directions_of(waves, grid);
+  for (std::size_t k = 0; k < directions.size(); ++k) scales[k] = to_color4(scale_of(waves, directions[k]));
 }
 
 // Q at each pair of nodes, to the front of `ratios`; both directions may be exchanged.
-void find_ratios(const WaveField& waves, const Grid& grid, std::vector<Color4>& ratios) {
-  const auto nodes = ends_of(waves, grid);
+void find_ratios(const BoundWaves& waves, const Grid& grid, std::vector<Color4>& ratios) {
+  const auto nodes = directions_of(waves, grid);
   std::vector<Rgb> scales;
-  for (const auto& end : nodes) scales.push_back(scale_of(waves, end));
+  for (const auto& w : nodes) scales.push_back(scale_of(waves, w));
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const auto row = waves.row(nodes[i]);
     for (std::size_t o = 0; o <= i; ++o) {
@@ -54,14 +54,14 @@ void find_ratios(const WaveField& waves, const Grid& grid, std::vector<Color4>& 
 
 }  // namespace
 
-Separable fit_isotropic(const WaveField& waves) {
+Separable fit_isotropic(const BoundWaves& waves) {
   Separable fit;
   find_scales(waves, {Separable::kScaleCosines, 1, false}, fit.scales);
   find_ratios(waves, {Separable::kRatioRoots, 1, true}, fit.ratios);
   return fit;
 }
 
-AnisotropicSeparable fit_anisotropic(const WaveField& waves) {
+AnisotropicSeparable fit_anisotropic(const BoundWaves& waves) {
   using Fit = AnisotropicSeparable;
   Fit fit;
   fit.scales.resize(Fit::kScaleCosines * Fit::kScaleAzimuths);

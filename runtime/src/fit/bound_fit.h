@@ -2,12 +2,12 @@
 // point.
 #pragma once
 
-#include "runtime/src/fit/wave_field.h"
+#include "runtime/src/fit/bound_waves.h"
 #include "runtime/src/lookup/separable.h"
 
 namespace sunbeam::inline v1 {
 
-Separable fit_isotropic(const WaveField& waves);
-AnisotropicSeparable fit_anisotropic(const WaveField& waves);
+Separable fit_isotropic(const BoundWaves& waves);
+AnisotropicSeparable fit_anisotropic(const BoundWaves& waves);
 
 }  // namespace sunbeam::inline v1

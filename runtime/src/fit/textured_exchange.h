@@ -9,16 +9,12 @@ namespace sunbeam::inline v1 {
 // What it is made of must outlive it.
 class TexturedExchange {
  public:
-  TexturedExchange(const Table& table, const TexturedRest& rest, const TexturedShares& shares,
-                   const TexturedFactor& factor);
+  // `exchange` is the table's array at the base IOR of the waves, `factor` theirs and `nodes` its L.
+  TexturedExchange(const NdArray& exchange, const TexturedWaves& waves, const TexturedMedia& media,
+                   const TexturedFactor& factor, const std::vector<Color4>& nodes);
 
-  void move_to(double base_ior);
-
-  // At a node of the thickness, where the shares, the factor and L are now: (direction, direction).
-  void find_pairs(int d, double absorption, Color4* pairs) const;
-
-  // Before that.
-  void take_visits();
+  // At a node of the thickness: (direction, direction).
+  void find_pairs(int d, Color4* pairs) const;
 
  private:
   static constexpr int kCosines = TexturedGrid::kCosines;
@@ -29,25 +25,20 @@ class TexturedExchange {
     std::size_t column() const { return static_cast<std::size_t>(p * kCosines + c); }
   };
 
-  std::vector<float> visits(std::size_t k) const;
-  void add_visits(int d, std::size_t k, const float* share, std::vector<Rgb>& sum) const;
-  double most_leaving(const std::vector<float>& visits, const float* share, double gain) const;
-  std::vector<Rgb> factors(int d, double absorption) const;
+  std::vector<float> brackets(const NdArray& exchange, std::size_t k) const;
+  void add_wavelength(int d, std::size_t k, std::vector<Rgb>& sum) const;
+  double most_leaving(const std::vector<float>& brackets, const float* share, double gain) const;
   Rgb one_visit(const End& a, const End& b) const;
 
-  const Table& table_;
-  const Wavelengths& waves_;
-  const TexturedRest& rest_;
+  const TexturedWaves& waves_;
+  const TexturedMedia& media_;
   const TexturedGrid& grid_;
-  const TexturedShares& shares_;
   const TexturedFactor& factor_;
+  const std::vector<Color4>& nodes_;
   std::vector<End> ends_;
-  std::vector<OrderStencil> exchange_at_;  // (thickness, wavelength)
-
-  NdArray exchange_;                        // at one base IOR
-  std::array<double, kCosines> below_{};    // cosines below the film
-  std::vector<std::vector<float>> visits_;  // of each wavelength: the bracket over (fringe_order, end, end)
-  std::vector<std::size_t> visits_of_;      // whose of them a wavelength shares
+  std::array<double, kCosines> below_{};      // cosines below the film
+  std::vector<std::vector<float>> brackets_;  // V, each over (fringe_order, end, end)
+  std::vector<std::size_t> brackets_of_;      // which of them a wavelength has
 };
 
 }  // namespace sunbeam::inline v1

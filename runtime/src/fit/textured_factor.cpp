@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "sunbeam/detail/textured_point.h"
+
 namespace sunbeam::inline v1 {
 namespace {
 
@@ -19,57 +21,31 @@ double phi_share(int p, int phis) {
 
 }  // namespace
 
-TexturedFactor::TexturedFactor(const Table& table, const TexturedRest& rest, const TexturedShares& shares)
-    : table_(table), waves_(table.factors.wavelengths), rest_(rest), grid_(rest.grid()), shares_(shares) {
-  if (rest.is_product()) return;
-  const double straight_down = fringe_order(table.material, 1);
-  for (int d = 0; d < grid_.axes[0].size(); ++d)
-    for (const double nm : waves_.nm) {
-      const double per = grid_.axes[0].node(d) / nm;
-      returned_at_.push_back(order_stencil(table.factors.returned.axes()[2], straight_down * per));
-    }
-}
-
-void TexturedFactor::move() {
-  find_frames();
-  find_quadrature();
-  if (!rest_.is_product()) take_returned();
-  weights_.clear();
-  norms_.clear();
+TexturedFactor::TexturedFactor(const TexturedWaves& waves, const TexturedMedia& media, bool is_product)
+    : waves_(waves), media_(media), grid_(waves.grid()), is_product_(is_product) {
+  take_frames();
+  take_quadrature();
   for (int d = 0; d < grid_.axes[0].size(); ++d) weigh(d);
 }
 
-void TexturedFactor::find_frames() {
-  const TexturedMaterial shared(table_.material);
-  const TexturedFrame frame(shared, shares_.material().base_ior, shares_.depth());
+void TexturedFactor::take_frames() {
+  const Material& material = waves_.field().material();
+  const TexturedMaterial shared(material);
+  const TexturedFrame frame(shared, material.base_ior, material.optical_depth());
   for (int c = 0; c < kCosines; ++c) {
     const auto cosine = static_cast<float>(grid_.cosine(c));
     film_cosines_[c] = std::min(std::sqrt(shared.film_cosine_squared(cosine)), 1.0f);
-    path_[c] = 1 / std::sqrt(frame.pigment_cosine_squared(cosine));
+    per_pigment_cosine_[c] = 1 / std::sqrt(frame.pigment_cosine_squared(cosine));
   }
 }
 
 // Trapezoids in the root: cos dw = 4 pi u^3 du. Relative to the least decay at normal incidence, so that no
 // pigment makes an integral vanish.
-void TexturedFactor::find_quadrature() {
+void TexturedFactor::take_quadrature() {
   for (int c = 0; c < kCosines; ++c) {
     const double root = static_cast<double>(c) / (kCosines - 1), end = c == kCosines - 1 ? 0.5 : 1;
     quadrature_[c] = 4 * kPi / (kCosines - 1) * end * root * root * root *
-                     std::exp(shares_.least_decay(kCosines - 1) - shares_.least_decay(c));
-  }
-}
-
-void TexturedFactor::take_returned() {
-  returned_.clear();
-  for (std::size_t k = 0; k < waves_.size(); ++k) {
-    if (k > 0 && waves_.absorption[k] == waves_.absorption[k - 1]) {
-      returned_.push_back(returned_.back());
-      continue;
-    }
-    const double depth = shares_.depth() * waves_.absorption[k];
-    const NdArray returned = table_.factors.returned.slice(std::array{shares_.material().base_ior, depth});
-    returned_.emplace_back(returned.values().begin(), returned.values().end());
-    returned_.back().resize(returned.cells() + kMoreOrders);
+                     std::exp(waves_.least_decay(kCosines - 1) - waves_.least_decay(c));
   }
 }
 
@@ -82,46 +58,48 @@ double TexturedFactor::hemispherical(const float* values) const {
   return sum;
 }
 
-double TexturedFactor::gain(int d, std::size_t k) const {
-  const double once = shares_.material().radiance_scale() * waves_.albedo[k] * kInvPi;
-  if (rest_.is_product()) return once;
-  return once / (1 - waves_.albedo[k] * blend(returned_[k], returned_at_[d * waves_.size() + k], 1, 0));
-}
-
 void TexturedFactor::weigh(int d) {
   const auto columns = static_cast<std::size_t>(grid_.columns());
-  const std::vector<float> shares = shares_.at_thickness(d);
+  const Wavelengths& wavelengths = waves_.field().wavelengths();
+  shares_.push_back(waves_.at_thickness(d));
   Rgb norm;
-  for (std::size_t k = 0; k < waves_.size(); ++k) {
-    const double gain = this->gain(d, k), arriving = hemispherical(shares.data() + k * columns);
+  for (std::size_t k = 0; k < wavelengths.size(); ++k) {
+    const double gain = waves_.gain(d, k), arriving = hemispherical(shares_.back().data() + k * columns);
     weights_.push_back(gain * arriving);
-    norm += gain * arriving * arriving * waves_.weight[k];
+    norm += gain * arriving * arriving * wavelengths.weight[k];
   }
   norms_.push_back(norm);
 }
 
+std::vector<Color4> TexturedFactor::nodes() const {
+  std::vector<Color4> nodes(static_cast<std::size_t>(grid_.paths * grid_.columns()));
+  for (int p = 0; p < grid_.paths; ++p) fold(p, nodes.data() + p * grid_.columns());
+  return nodes;
+}
+
 FloatRgb TexturedFactor::reflectance(double thickness_nm, int c) const {
   FloatRgb reflectance;
-  rest_.film().fold(thickness_nm, shares_.material().base_ior, {&film_cosines_[c], 1}, &reflectance);
+  media_.film.fold(thickness_nm, waves_.field().material().base_ior, {&film_cosines_[c], 1}, &reflectance);
   return reflectance;
 }
 
 void TexturedFactor::fold(int p, Color4* to) const {
   const auto columns = static_cast<std::size_t>(grid_.columns());
-  const std::vector<float> shares = shares_.at_path(p);
+  const Wavelengths& wavelengths = waves_.field().wavelengths();
+  const std::vector<float> shares = waves_.at_path(p);
   for (int c = 0; c < kCosines; ++c) {
-    const double thickness = shares_.thickness_nm(p, c);
+    const double thickness = waves_.thickness_nm(p, c);
     const EvenAxis& axis = grid_.axes[0];
     const EvenPosition d = axis.locate(axis.clamped(thickness));
     const double upper{d.upper_weight};
-    const double* weights = weights_.data() + d.lower * waves_.size();
+    const double* weights = weights_.data() + d.lower * wavelengths.size();
     const Rgb norm = (1 - upper) * norms_[d.lower] + upper * norms_[d.lower + 1];
     const FloatRgb reflectance = this->reflectance(thickness, c);
     for (std::size_t column = c; column < columns; column += kCosines) {
       Rgb b;
-      for (std::size_t k = 0; k < waves_.size(); ++k)
-        b += lerp(upper, weights[k], weights[k + waves_.size()]) * double{shares[k * columns + column]} *
-             waves_.weight[k];
+      for (std::size_t k = 0; k < wavelengths.size(); ++k)
+        b += lerp(upper, weights[k], weights[k + wavelengths.size()]) * double{shares[k * columns + column]} *
+             wavelengths.weight[k];
       to[column] = node(b, norm, c, reflectance);
     }
   }
@@ -134,7 +112,7 @@ Color4 TexturedFactor::node(const Rgb& b, const Rgb& norm, int c, const FloatRgb
   for (int channel = 0; channel < 3; ++channel) {
     const double albedo = std::max({b[channel], kLeastShare * mean(b), kLeastValue});
     const double scale = std::sqrt(std::max({norm[channel], kLeastShare * mean(norm), square(kLeastValue)}));
-    const double decay = shares_.least_decay(c) - this->decay(channel, c);
+    const double decay = waves_.least_decay(c) - this->decay(channel, c);
     const double value = std::log(albedo / scale / double{passing[channel]}) - decay;
     result[channel] = static_cast<float>(std::clamp(value, kLeastLog, kMostLog));
   }
@@ -142,31 +120,36 @@ Color4 TexturedFactor::node(const Rgb& b, const Rgb& norm, int c, const FloatRgb
   return result;
 }
 
-Rgb TexturedFactor::value(const Color4& log, int c, double thickness_nm) const {
-  const Rgb logs = to_rgb(log), passing = to_rgb(this->passing(c, reflectance(thickness_nm, c)));
+Rgb TexturedFactor::value(const std::vector<Color4>& nodes, int d, int c, int column) const {
+  const double thickness = grid_.axes[0].node(d);
+  const auto path = static_cast<float>(textured_path(waves_.field().material(), grid_.cosine(c)));
+  const EvenPosition at = grid_.locate_path(static_cast<float>(thickness), path);
+  const Color4* lower = nodes.data() + at.lower * grid_.columns() + column;
+  const Rgb logs = to_rgb(lower[0] + at.upper_weight * (lower[grid_.columns()] - lower[0]));
+  const Rgb passing = to_rgb(this->passing(c, reflectance(thickness, c)));
   Rgb b;
   for (int channel = 0; channel < 3; ++channel)
-    b[channel] = std::exp(logs[channel] + shares_.least_decay(c) - decay(channel, c)) * passing[channel];
+    b[channel] = std::exp(logs[channel] + waves_.least_decay(c) - decay(channel, c)) * passing[channel];
   return b;
 }
 
 // a tau / m~.
 double TexturedFactor::decay(int channel, int c) const {
-  return shares_.depth() * double{rest_.absorption()[channel]} * path_[c];
+  return waves_.field().material().optical_depth() * double{media_.absorption[channel]} *
+         per_pigment_cosine_[c];
 }
 
 Color4 TexturedFactor::passing(int c, const FloatRgb& reflectance) const {
-  return shares_.material().is_smooth() ? rest_.passing(reflectance)
-                                        : TexturedMaterial::passing(film_cosines_[c]) + Color4{};
+  return waves_.field().material().is_smooth() ? media_.passing(reflectance)
+                                               : TexturedMaterial::passing(film_cosines_[c]) + Color4{};
 }
 
 double TexturedFactor::first_chance(const FloatRgb& r, double rest, int c) const {
-  const Material& material = shares_.material();
+  const Material& material = waves_.field().material();
   const double of_first = std::max(0.0, double{r.r + r.g + r.b} / 3);
-  double of_rest =
-      std::max(0.0, rest) * std::exp(-shares_.least_decay(c) - shares_.least_decay(kCosines - 1));
-  if (rest_.is_product())  // the bracket, without X, at a mean cosine of the light
-    of_rest *= one_visit_of_product(shares_.depth() * double{rest_.absorption()[3]},
+  double of_rest = std::max(0.0, rest) * std::exp(-waves_.least_decay(c) - waves_.least_decay(kCosines - 1));
+  if (is_product_)  // the bracket, without X, at a mean cosine of the light
+    of_rest *= one_visit_of_product(material.optical_depth() * double{media_.absorption[3]},
                                     material.cosine_below(grid_.cosine(c)), material.cosine_below(2.0 / 3));
   return std::clamp(of_first / (of_first + of_rest + kLeastValue), kLeastChance, 1 - kLeastChance);
 }

@@ -1,64 +1,66 @@
-// The rest of a factored table (factors.h) at one parameter point, a wavelength at a time.
+// What a factored table says of each wavelength at one base IOR and absorption, in the symbols of
+// sunbeam/detail/factors.h, which stores the arrays that bake/factored/arrival.h, returned.h and exchange.h
+// make:
+//
+//   depth  tau,   arrival  ln A but for the pigment,   gain  g,   bracket  V of path "product",
+//   rest = g A(wi) A(wo) V(wi, wo),  V = 1 with path "sum".
+//
+// BoundWaves is it at one thickness and any direction, in doubles. TexturedWaves is it at all thicknesses and
+// a few directions, in floats.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "runtime/src/film/film_spectrum.h"
 #include "sunbeam/table.h"
 
 namespace sunbeam::inline v1 {
 
 class WaveField {
  public:
-  // `material` is that of the table with the parameters of the point, which lie in the grid.
-  WaveField(const Table& table, const Material& material, const FilmKernels& kernels = best_film_kernels());
+  // `material` is that of the table with the parameters of the point, which lie in the grid; its thickness is
+  // of no matter. The table must outlive this.
+  WaveField(const Table& table, const Material& material);
 
-  // What the rest needs to know of one direction.
-  struct End {
-    double below = 0;                            // cosine below the film
-    std::array<double, kMostWavelengths> share;  // A
-    std::vector<std::size_t> node;               // of `exchange`, and their weights
-    std::vector<double> weight;
-  };
-  // phi in [0, pi/2]; of no matter for an isotropic film.
-  End end(double cosine, double phi) const;
+  std::size_t size() const { return depths_.size(); }
+  const Wavelengths& wavelengths() const { return factors_.wavelengths; }
+  const Material& material() const { return material_; }
 
-  // The same with `exchange` contracted, for many others.
-  struct Row {
-    double below;
-    std::array<double, kMostWavelengths> share;
-    std::vector<double> exchange;  // (wavelength, node)
-  };
-  Row row(const End& i) const;
-
-  // Folded, 1/sr.
-  Rgb rest(const Row& i, const End& o) const;
-
-  // A folded: what of a direction's light reaches the base.
-  Rgb arriving(const End& end) const {
-    return wavelengths_.fold(std::span(end.share).first(wavelengths_.size()));
-  }
-
-  const FilmSpectrum& film() const { return film_; }
+  double depth(std::size_t k) const { return depths_[k]; }
+  // Over (fringe_order, cos_theta, phi), for a rough film. Wavelengths of one depth have one slice in common,
+  // whose number is slice(k).
+  std::size_t slice(std::size_t k) const { return slice_[k]; }
+  const std::vector<NdArray>& arrivals() const { return arrivals_; }
+  // s kd / pi; with path "sum" all visits of the base add up to 1 / (1 - kd returned) of it.
+  double gain(std::size_t k, double returned = 0) const;
 
  private:
-  void take_arrival(const Factors& factors);
-  void take_gain(const Factors& factors);
-  void take_exchange(const Factors& factors);
-  void limit_gain(bool is_sum);
-  // Factor of A A of wavelength k that path "product" adds: all visits of the base, times gain.
-  double visits(const Row& i, const End& o, std::size_t k) const;
-  std::vector<double> leaving(const Row& from, std::span<const End> to) const;
-
+  const Factors& factors_;
   Material material_;
-  Wavelengths wavelengths_;
-  FilmSpectrum film_;
-  std::vector<double> depth_;     // tau_k
-  std::vector<double> gain_;      // s kd_k / pi, with "sum" also / (1 - kd_k returned_k)
-  std::vector<NdArray> arrival_;  // (fringe_order, cos_theta, phi) of each wavelength, or one for all
-  std::vector<Axis> ends_;        // (cos_theta, phi) of `exchange`
-  std::vector<std::vector<double>> exchange_;  // of each wavelength, end by end
+  std::vector<double> depths_;
+  std::vector<std::size_t> slice_;
+  std::vector<NdArray> arrivals_;
 };
+
+// Of each unit of power that arrives at the base, whatever its direction, no more than one leaves the film.
+// Interpolation does not know that, and over a bright base errors of a per mille in what the film returns
+// become a per cent. So a gain with which `most_leaving` would leave is cut.
+inline double cut_gain(double gain, double most_leaving) { return gain / std::max(most_leaving, 1.0); }
+
+// A node of the two axes of a direction in an array, (cos_theta, phi), and its weight there.
+struct DirectionTap {
+  std::size_t node;
+  double weight;
+};
+std::vector<DirectionTap> direction_taps(const Axis& cosines, const Axis& phis, double cosine, double phi);
+
+// One direction of `exchange` contracted: adds to each node of the other what the array, (direction,
+// direction), holds there.
+void contract(std::span<const float> exchange, std::span<const DirectionTap> from, std::span<double> row);
+
+// V of two directions, whose cosines below the film are m_i and m_o; `row` is exchange with the first
+// contracted.
+double bracket(double depth, double m_i, double m_o, std::span<const double> row,
+               std::span<const DirectionTap> to);
 
 }  // namespace sunbeam::inline v1

@@ -18,18 +18,16 @@ std::vector<Color4> folded_film(const FilmSpectrum& film, const Material& materi
   for (int k = 0; k < BoundValues::kFilmCosines; ++k) cosines.push_back(static_cast<float>(even_cosine(k)));
   std::vector<FloatRgb> folded(cosines.size());
   film.fold(material.film_thickness_nm, material.base_ior, cosines, folded.data());
-  std::vector<Color4> nodes;
-  for (const FloatRgb& rgb : folded) nodes.push_back(Color4{rgb.r, rgb.g, rgb.b, 0});
-  nodes.push_back(Color4{});
+  std::vector<Color4> nodes(folded.size() + 1);
+  for (std::size_t k = 0; k < folded.size(); ++k) nodes[k] = Color4{folded[k].r, folded[k].g, folded[k].b, 0};
   return nodes;
 }
 
 std::vector<Color4> interpolated_film(const NdArray& reflectance, const Material& material) {
-  std::vector<Color4> nodes;
+  std::vector<Color4> nodes(BoundValues::kFilmCosines + 1);
   for (int k = 0; k < BoundValues::kFilmCosines; ++k)
-    nodes.push_back(to_color4(
-        reflectance.interpolate(std::array{material.film_thickness_nm, material.base_ior, even_cosine(k)})));
-  nodes.push_back(Color4{});
+    nodes[k] = to_color4(
+        reflectance.interpolate(std::array{material.film_thickness_nm, material.base_ior, even_cosine(k)}));
   return nodes;
 }
 
@@ -42,8 +40,8 @@ BoundValues::BoundValues(const Table& table, const Material& material_at, Arithm
     film = interpolated_film(table.film_reflectance, material);
     return;
   }
-  const WaveField waves(table, material,
-                        arithmetic == Arithmetic::fastest ? best_film_kernels() : baseline_film_kernels());
+  const BoundWaves waves(table, material,
+                         arithmetic == Arithmetic::fastest ? best_film_kernels() : baseline_film_kernels());
   film = folded_film(waves.film(), material);
   if (symmetry == Symmetry::isotropic)
     separable = fit_isotropic(waves);

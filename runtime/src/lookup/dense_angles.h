@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "runtime/src/base/color4.h"
 #include "runtime/src/base/bound_axis.h"
+#include "runtime/src/base/color4.h"
 #include "sunbeam/detail/angles.h"
 #include "sunbeam/detail/nd_array.h"
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "runtime/src/base/exp4.h"
-#include "runtime/src/film/film_spectrum.h"
-#include "runtime/src/fit/textured_grid.h"
+#include "runtime/src/lookup/textured_grid.h"
+#include "runtime/src/lookup/textured_media.h"
 #include "sunbeam/detail/textured_point.h"
 
 namespace sunbeam::inline v1 {
@@ -27,8 +27,7 @@ class TexturedRest {
   };
   // `path` is the root of TexturedMaterial::path_squared, `root` that of the cosine.
   Direction direction(const TexturedPlace& place, float path, float root) const {
-    const float x = (place.thickness_nm * path - grid_.first_path) * grid_.per_extent;
-    return {{std::max(x, 0.0f), grid_.paths}, {root, TexturedGrid::kCosines}};
+    return {grid_.locate_path(place.thickness_nm, path), {root, TexturedGrid::kCosines}};
   }
 
   // L; the last lane is the chance of sampling the first surface, interpolated too.
@@ -81,21 +80,11 @@ class TexturedRest {
     }
   }
 
-  // The film's transmittance folded, from its reflectance; kept above 0.
-  Color4 passing(const FloatRgb& reflectance) const {
-    const Color4 all{total_.r - reflectance.r, total_.g - reflectance.g, total_.b - reflectance.b, 0};
-    return select(all > kLeastPassing, all, Color4{} + kLeastPassing);
-  }
-
-  const FilmSpectrum& film() const { return film_; }
-  const Color4& absorption() const { return absorption_; }
-  const TexturedGrid& grid() const { return grid_; }
+  const TexturedMedia& media() const { return media_; }
   const EvenAxis& axis(std::size_t k) const { return grid_.axes[k]; }
   std::size_t bytes() const { return (nodes_.size() + pairs_.size()) * sizeof(Color4); }
 
  private:
-  static constexpr float kLeastPassing = 1e-4f;
-
   // Neighbours of a direction among those of pairs_, and their weights.
   struct PairTaps {
     std::array<int, 4> node;
@@ -104,24 +93,10 @@ class TexturedRest {
   };
   PairTaps taps(const PairEnd& end) const;
 
-  void find_nodes(const Table& table);
-
-  // At the first path and cosine.
-  std::size_t row(int base_ior, int absorption) const {
-    return static_cast<std::size_t>((base_ior * grid_.axes[2].size() + absorption) * grid_.columns());
-  }
-  // Of X at a node of the parameters.
-  std::size_t first_pair(int thickness, int base_ior, int absorption) const {
-    const int node = (thickness * grid_.axes[1].size() + base_ior) * grid_.axes[2].size() + absorption;
-    return static_cast<std::size_t>(node) * static_cast<std::size_t>(grid_.pair_ends() * grid_.pair_ends());
-  }
-
   TexturedGrid grid_;
-  FilmSpectrum film_;
+  TexturedMedia media_;
   int stride_;                 // from path to path, in nodes
   std::array<int, 4> corner_;  // distance of a place's rows from the first
-  FloatRgb total_;             // the fold of 1
-  Color4 absorption_;          // a of each channel, and their mean
   std::vector<Color4> nodes_;  // (path, base_ior, absorption_per_nm, phi, root of the cosine)
   // Path "product" only: (film_thickness_nm, base_ior, absorption_per_nm, direction, direction), directions
   // as (phi, root of the cosine).

@@ -56,7 +56,7 @@ struct TexturedData {
   const EvenAxis& axis(std::size_t k) const { return kind == Kind::dense ? dense->axis(k) : rest->axis(k); }
   // Of the pigment relative to the parameter, as far as the rest decays with it.
   float mean_absorption() const {
-    if (kind != Kind::dense) return rest->absorption()[3];
+    if (kind != Kind::dense) return rest->media().absorption[3];
     return material.scatters() || material.has_multiple_facets() ? 0 : 1;
   }
 
@@ -65,7 +65,7 @@ struct TexturedData {
                      const TexturedEnd& i) const {
     const float paths = o.per_pigment_cosine + i.per_pigment_cosine;
     return exp4(rest->at(place, o.at) + rest->at(place, i.at) -
-                (at.optical_depth * paths) * rest->absorption());
+                (at.optical_depth * paths) * rest->media().absorption);
   }
 
   // The same for an anisotropic film or path "product", times its bracket.
@@ -76,11 +76,11 @@ struct TexturedData {
         end_i{std::sqrt(static_cast<float>(wi.z)), quadrant(wi)};
     const float paths = o.per_pigment_cosine + i.per_pigment_cosine;
     const Color4 factor = exp4(rest->at(place, o.at, end_o.phi) + rest->at(place, i.at, end_i.phi) -
-                               (at.optical_depth * paths) * rest->absorption());
+                               (at.optical_depth * paths) * rest->media().absorption);
     if (!rest->is_product()) return factor;
     const float beyond_o = 1 / at.cosine_below(static_cast<float>(wo.z)) - 1,
                 beyond_i = 1 / at.cosine_below(static_cast<float>(wi.z)) - 1;
-    const Color4 one_visit = exp4((at.optical_depth * (1 - beyond_o * beyond_i)) * rest->absorption());
+    const Color4 one_visit = exp4((at.optical_depth * (1 - beyond_o * beyond_i)) * rest->media().absorption);
     return factor * (one_visit + rest->exchange(parameters, end_o, end_i));
   }
 
@@ -166,7 +166,7 @@ TexturedTable::At::At(const TexturedData& data, const Parameters& parameters)
 
 // Reflectances of the film at up to three cosines, at the price of little more than one.
 inline void TexturedTable::At::fold(std::span<const float> cosines, FloatRgb* reflectance) const {
-  data_->rest->film().fold(parameters_.film_thickness_nm, parameters_.base_ior, cosines, reflectance);
+  data_->rest->media().film.fold(parameters_.film_thickness_nm, parameters_.base_ior, cosines, reflectance);
 }
 
 Rgb TexturedTable::At::dirac(const Vec3& wo) const {
@@ -214,7 +214,8 @@ SUNBEAM_ALWAYS_INLINE EvalPdf TexturedTable::At::factored_eval_pdf(const Viewer&
   else
     rest = data.general_factor(parameters_, place_, frame_, viewer.end, i, wo, wi);
   const float chance = viewer.first_chance, rest_pdf = (1 - chance) * rest_density_.pdf(pair.cosine);
-  if (data.smooth) return {to_rgb(nodes.passing(film[0]) * nodes.passing(film[1]) * rest), double{rest_pdf}};
+  if (data.smooth)
+    return {to_rgb(nodes.media().passing(film[0]) * nodes.media().passing(film[1]) * rest), double{rest_pdf}};
   const float passing = viewer.end.passing * i.passing;
   const Color4 reflectance{film[0].r, film[0].g, film[0].b, 0};
   return {to_rgb(passing * rest + pair.lobe * reflectance), double{rest_pdf + chance * pair.pdf}};

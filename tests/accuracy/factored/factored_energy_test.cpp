@@ -6,12 +6,12 @@
 //     albedo(w) = first(w) + 2 pi Int rest(w, c) c dc.
 // A folded albedo is sum_k weight_k albedo_k. The weights' means over channels are not negative and add up to
 // 1 (asserted), so that no mean over channels exceeds the largest albedo of a wavelength; and the channels of
-// rgb3 are wavelengths. WaveField at one wavelength takes microseconds where a table takes milliseconds to
+// rgb3 are wavelengths. BoundWaves at one wavelength takes microseconds where a table takes milliseconds to
 // bind: it stands for the many, and some tables are bound whole.
 
 #include "bake/base/parallel_tasks.h"
 #include "bake/optics/thin_film.h"
-#include "runtime/src/fit/wave_field.h"
+#include "runtime/src/fit/bound_waves.h"
 #include "sunbeam/detail/ggx.h"
 #include "tests/accuracy/factored/support.h"
 #include "tests/support/quadrature.h"
@@ -74,11 +74,11 @@ class Monochromatic {
     const double nm = lerp(rng.uniform(), shortest_, longest_);
     table_.factors.wavelengths = {{nm}, {1}, {1}, {Rgb(1)}};
     const Material material = parameters.applied_to(table_.material);
-    const WaveField rest(table_, material);
+    const BoundWaves rest(table_, material);
     const double cosine = lerp(rng.uniform(), kLeastCosine, 1);
-    const auto row = rest.row(rest.end(cosine, 0));
+    const auto row = rest.row(rest.direction(cosine, 0));
     const double returned = test::integrate(
-        0, 1, kPanels, [&](double c) { return 2 * kPi * c * rest.rest(row, rest.end(c, 0)).r; });
+        0, 1, kPanels, [&](double c) { return 2 * kPi * c * rest.rest(row, rest.direction(c, 0)).r; });
     return first_albedo(material, direction_from_cosine(cosine, 0), nm) + returned;
   }
 

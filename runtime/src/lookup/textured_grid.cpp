@@ -1,4 +1,4 @@
-#include "runtime/src/fit/textured_grid.h"
+#include "runtime/src/lookup/textured_grid.h"
 
 #include <cmath>
 

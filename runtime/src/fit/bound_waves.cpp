@@ -1,0 +1,115 @@
+#include "runtime/src/fit/bound_waves.h"
+
+namespace sunbeam::inline v1 {
+namespace {
+
+// Gauss-Legendre over cosines: 1e-4 of what passes a film of a dozen fringe orders.
+constexpr int kPanels = 12;
+constexpr std::array kNode = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
+constexpr std::array kWeight = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
+                                0.1739274225687269};
+constexpr int kViewers = 8;
+
+double cosine_at(std::size_t k) { return (static_cast<double>(k / 4) + kNode[k % 4]) / kPanels; }
+
+}  // namespace
+
+BoundWaves::BoundWaves(const Table& table, const Material& material, const FilmKernels& kernels)
+    : film_(table.factors.wavelengths, material.exterior_ior, material.film_ior, kernels),
+      field_(table, material) {
+  const bool is_sum = table.factors.exchange.empty();
+  for (std::size_t k = 0; k < field_.size(); ++k)
+    gain_.push_back(field_.gain(k, is_sum ? returned(table.factors, k) : 0));
+  if (!is_sum) take_exchange(table.factors);
+  cut_gains(is_sum);
+}
+
+double BoundWaves::fringe_order_of(std::size_t k, double cosine) const {
+  return fringe_order(field_.material(), cosine) * field_.material().film_thickness_nm /
+         field_.wavelengths().nm[k];
+}
+
+double BoundWaves::returned(const Factors& factors, std::size_t k) const {
+  return factors.returned
+      .interpolate(std::array{field_.material().base_ior, field_.depth(k), fringe_order_of(k, 1)})
+      .r;
+}
+
+void BoundWaves::take_exchange(const Factors& factors) {
+  axes_ = {factors.exchange.axes()[4], factors.exchange.axes()[5]};
+  for (std::size_t k = 0; k < field_.size(); ++k) {
+    const NdArray slice = factors.exchange.slice(std::array{
+        field_.material().base_ior, field_.depth(k), field_.wavelengths().albedo[k], fringe_order_of(k, 1)});
+    exchange_.emplace_back(slice.values().begin(), slice.values().end());
+  }
+}
+
+// Path "sum" forgets the direction of arrival, so that one viewer is enough.
+void BoundWaves::cut_gains(bool is_sum) {
+  std::vector<Direction> to;
+  for (std::size_t k = 0; k < 4 * kPanels; ++k) to.push_back(direction(cosine_at(k), 0));
+  std::vector<double> most(gain_.size());
+  for (int v = is_sum ? kViewers : 1; v <= kViewers; ++v) {
+    const auto share = leaving(row(direction(static_cast<double>(v) / kViewers, 0)), to);
+    for (std::size_t k = 0; k < most.size(); ++k) most[k] = std::max(most[k], share[k]);
+  }
+  for (std::size_t k = 0; k < most.size(); ++k) gain_[k] = cut_gain(gain_[k], most[k]);
+}
+
+// Int rest cos / A(from) at each wavelength.
+std::vector<double> BoundWaves::leaving(const Row& from, std::span<const Direction> to) const {
+  std::vector<double> sum(gain_.size());
+  for (std::size_t n = 0; n < to.size(); ++n)
+    for (std::size_t k = 0; k < sum.size(); ++k)
+      sum[k] += 2 * kPi * cosine_at(n) * kWeight[n % 4] / kPanels * gain_[k] * to[n].share[k] *
+                visits(from, to[n], k);
+  return sum;
+}
+
+BoundWaves::Direction BoundWaves::direction(double cosine, double phi) const {
+  Direction w;
+  w.below = field_.material().cosine_below(cosine);
+  const double per_cosine = 1 / arrival_cosine(field_.material(), cosine);
+  std::array<float, kMostWavelengths> passing;
+  if (field_.material().is_smooth())
+    film_.powers(field_.material().film_thickness_nm, field_.material().base_ior, static_cast<float>(cosine),
+                 passing.data());
+  for (std::size_t k = 0; k < field_.size(); ++k) {
+    const double pigment = -field_.depth(k) * per_cosine;
+    if (field_.material().is_smooth()) {
+      w.share[k] = double{passing[k]} * std::exp(pigment);
+    } else {
+      const NdArray& arrival = field_.arrivals()[field_.slice(k)];
+      w.share[k] =
+          std::exp(arrival.interpolate(std::array{fringe_order_of(k, cosine), cosine, phi}).r + pigment);
+    }
+  }
+  if (!exchange_.empty()) w.taps = direction_taps(axes_[0], axes_[1], cosine, phi);
+  return w;
+}
+
+BoundWaves::Row BoundWaves::row(const Direction& i) const {
+  Row row{i.below, i.share, {}};
+  if (exchange_.empty()) return row;
+  const std::size_t nodes = axes_[0].size() * axes_[1].size();
+  row.exchange.resize(nodes * field_.size());
+  for (std::size_t k = 0; k < exchange_.size(); ++k)
+    contract(exchange_[k], i.taps, std::span(row.exchange).subspan(k * nodes, nodes));
+  return row;
+}
+
+// What path "product" multiplies A A g of wavelength k by.
+double BoundWaves::visits(const Row& i, const Direction& o, std::size_t k) const {
+  if (i.exchange.empty()) return 1;
+  const std::size_t nodes = i.exchange.size() / field_.size();
+  return bracket(field_.depth(k), i.below, o.below, std::span(i.exchange).subspan(k * nodes, nodes), o.taps);
+}
+
+Rgb BoundWaves::rest(const Row& i, const Direction& o) const {
+  Rgb sum;
+  for (std::size_t k = 0; k < field_.size(); ++k)
+    sum += gain_[k] * i.share[k] * o.share[k] * visits(i, o, k) * field_.wavelengths().weight[k];
+  return sum;
+}
+
+}  // namespace sunbeam::inline v1

@@ -1,0 +1,60 @@
+// A WaveField at one thickness: A, gain and rest of any direction, a wavelength at a time, in doubles.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "runtime/src/film/film_spectrum.h"
+#include "runtime/src/fit/wave_field.h"
+
+namespace sunbeam::inline v1 {
+
+class BoundWaves {
+ public:
+  // `material` is that of the table with the parameters of the point, which lie in the grid. The table must
+  // outlive this.
+  BoundWaves(const Table& table, const Material& material, const FilmKernels& kernels = best_film_kernels());
+
+  // What the rest needs to know of one direction.
+  struct Direction {
+    double below = 0;                            // cosine below the film
+    std::array<double, kMostWavelengths> share;  // A
+    std::vector<DirectionTap> taps;              // in exchange
+  };
+  // phi in [0, pi/2]; of no matter for an isotropic film.
+  Direction direction(double cosine, double phi) const;
+
+  // The same with exchange contracted, for many others.
+  struct Row {
+    double below;
+    std::array<double, kMostWavelengths> share;
+    std::vector<double> exchange;  // (wavelength, node)
+  };
+  Row row(const Direction& i) const;
+
+  // Folded, 1/sr.
+  Rgb rest(const Row& i, const Direction& o) const;
+
+  // A folded: what of a direction's light reaches the base.
+  Rgb arriving(const Direction& w) const {
+    return field_.wavelengths().fold(std::span(w.share).first(field_.size()));
+  }
+
+  const FilmSpectrum& film() const { return film_; }
+
+ private:
+  double fringe_order_of(std::size_t k, double cosine) const;
+  double returned(const Factors& factors, std::size_t k) const;
+  void take_exchange(const Factors& factors);
+  void cut_gains(bool is_sum);
+  double visits(const Row& i, const Direction& o, std::size_t k) const;
+  std::vector<double> leaving(const Row& from, std::span<const Direction> to) const;
+
+  FilmSpectrum film_;
+  WaveField field_;
+  std::vector<double> gain_;
+  std::vector<Axis> axes_;                    // (cos_theta, phi) of exchange
+  std::vector<std::vector<float>> exchange_;  // of each wavelength, (direction, direction)
+};
+
+}  // namespace sunbeam::inline v1

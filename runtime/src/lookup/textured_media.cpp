@@ -1,0 +1,27 @@
+#include "runtime/src/lookup/textured_media.h"
+
+namespace sunbeam::inline v1 {
+namespace {
+
+// The weighted mean of the pigment's spectrum in each channel, and over channels.
+Color4 mean_absorption(const Wavelengths& w) {
+  Rgb sum, total;
+  for (std::size_t k = 0; k < w.size(); ++k) {
+    sum += w.absorption[k] * w.weight[k];
+    total += w.weight[k];
+  }
+  Rgb result;
+  for (int c = 0; c < 3; ++c) result[c] = std::max(sum[c] / total[c], 0.0);
+  Color4 lanes = to_color4(result);
+  lanes[3] = static_cast<float>(mean(result));
+  return lanes;
+}
+
+}  // namespace
+
+TexturedMedia::TexturedMedia(const Table& table)
+    : film(table.factors.wavelengths, table.material.exterior_ior, table.material.film_ior),
+      total(FilmWavelengths(table.factors.wavelengths).total_weight),
+      absorption(mean_absorption(table.factors.wavelengths)) {}
+
+}  // namespace sunbeam::inline v1

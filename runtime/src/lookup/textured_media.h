@@ -1,0 +1,26 @@
+// What of the film and the pigment a textured table folds in closed form at every look-up: P of a smooth film
+// and a (sunbeam/textured_table.h).
+#pragma once
+
+#include "runtime/src/base/color4.h"
+#include "runtime/src/film/film_spectrum.h"
+#include "sunbeam/table.h"
+
+namespace sunbeam::inline v1 {
+
+struct TexturedMedia {
+  explicit TexturedMedia(const Table& table);
+
+  // The film's transmittance folded, from its reflectance; kept above 0.
+  Color4 passing(const FloatRgb& reflectance) const {
+    constexpr float kLeastPassing = 1e-4f;
+    const Color4 all{total.r - reflectance.r, total.g - reflectance.g, total.b - reflectance.b, 0};
+    return select(all > kLeastPassing, all, Color4{} + kLeastPassing);
+  }
+
+  FilmSpectrum film;
+  FloatRgb total;     // the fold of 1
+  Color4 absorption;  // a of each channel, and their mean
+};
+
+}  // namespace sunbeam::inline v1

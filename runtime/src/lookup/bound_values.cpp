@@ -53,7 +53,7 @@ BoundValues::BoundValues(const Table& table, const Material& material_at, Arithm
 
 Rgb BoundValues::other_rest(const Vec3& wo, const Vec3& wi) const {
   if (const auto* factored = std::get_if<AnisotropicSeparable>(&other)) return to_rgb(factored->rest(wo, wi));
-  return std::get<DenseRest>(other)(wo, wi);
+  return std::get<DenseRest>(other).rest(Parameters(), wo, wi);
 }
 
 Rgb BoundValues::film_reflectance(double cosine) const {
@@ -63,7 +63,8 @@ Rgb BoundValues::film_reflectance(double cosine) const {
 
 void BoundValues::visit_azimuth_mean(const Vec3& wo,
                                      const std::function<void(const OfCosine&)>& visit) const {
-  if (const auto* dense = std::get_if<DenseRest>(&other)) return visit(DenseRest::AzimuthMean(*dense, wo));
+  if (const auto* dense = std::get_if<DenseRest>(&other))
+    return visit(DenseRest::AzimuthMean(*dense, Parameters(), wo));
   if (is_separable())
     return visit([&](double cos_i) {
       return to_rgb(separable.rest(static_cast<float>(wo.z), static_cast<float>(cos_i)));

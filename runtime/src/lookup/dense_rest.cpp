@@ -20,15 +20,59 @@ std::vector<double> mean_weights(const Axis& axis) {
   return weights;
 }
 
+std::vector<Color4> nodes_of(const NdArray& array) {
+  std::vector<Color4> nodes;
+  nodes.reserve(array.cells());
+  for (std::size_t k = 0; k < array.cells(); ++k) nodes.push_back(to_color4(array.get(k)));
+  return nodes;
+}
+
+ThreeAxes first_axes(const NdArray& array) {
+  ThreeAxes axes;
+  for (std::size_t k = 0; k < 3; ++k) axes[k] = BoundAxis(array.axes()[k], array.stride(k));
+  return axes;
+}
+
+// Sum of what `of_node` finds at nodes of three axes.
+template <class OfNode>
+Color4 sum_over(const ThreeAxes& axes, const std::array<double, 3>& x, OfNode of_node) {
+  const auto a = axes[0].at(x[0]), b = axes[1].at(x[1]), c = axes[2].at(x[2]);
+  Color4 sum{};
+  for (int i = 0; i < a.count; ++i)
+    for (int j = 0; j < b.count; ++j)
+      for (int k = 0; k < c.count; ++k)
+        sum += a.weight[i] * b.weight[j] * c.weight[k] * of_node(a.offset[i] + b.offset[j] + c.offset[k]);
+  return sum;
+}
+
 }  // namespace
 
+DenseFilm::DenseFilm(const NdArray& array) : axes_(first_axes(array)), nodes_(nodes_of(array)) {}
+
+Rgb DenseFilm::at(const Parameters& at, double cosine) const {
+  return to_rgb(sum_over(axes_, {at.film_thickness_nm, at.base_ior, cosine},
+                         [&](int offset) -> const Color4& { return nodes_[offset]; }));
+}
+
+DenseRest::DenseRest(const Table& table)
+    : material_(table.material),
+      symmetry_(table.symmetry),
+      is_full_(table.is_full_spectrum()),
+      angles_(std::in_place, table.remainder, table.symmetry),
+      remainder_(nodes_of(table.remainder)),
+      axes_(first_axes(table.remainder)),
+      reflectance_(table.film_reflectance) {
+  if (table.frame == FrameKind::closed) frame_.emplace(material_, table.first_visit);
+  if (!table.film_transmittance.empty()) transmittance_.emplace(table.film_transmittance);
+}
+
 DenseRest::DenseRest(const Table& table, const Material& material)
-    : symmetry_(table.symmetry), is_full_(table.is_full_spectrum()) {
+    : material_(material), symmetry_(table.symmetry), is_full_(table.is_full_spectrum()) {
   const auto point = Parameters::of(material).values();
   const NdArray sliced = table.remainder.slice(point);
   stderr_ = table.rest_stderr.slice(point);
   angles_.emplace(sliced, symmetry_);
-  for (std::size_t cell = 0; cell < sliced.cells(); ++cell) remainder_.push_back(to_color4(sliced.get(cell)));
+  remainder_ = nodes_of(sliced);
   if (table.frame == FrameKind::none) return;
   frame_.emplace(material, table.first_visit);
   const bool reflects = table.film_transmittance.empty();
@@ -36,23 +80,38 @@ DenseRest::DenseRest(const Table& table, const Material& material)
       (reflects ? table.film_reflectance : table.film_transmittance).slice(std::span(point).first(2));
   for (std::size_t i = 0; i < kCurveNodes; ++i) {
     const Rgb value = film.interpolate(std::array{static_cast<double>(i) / (kCurveNodes - 1)});
-    transmittance_.push_back(reflects ? Rgb(1) - value : value);
+    transmittances_.push_back(reflects ? Rgb(1) - value : value);
   }
 }
 
-Rgb DenseRest::transmittance(double cosine) const {
-  const Bracket at = even_bracket(cosine, kCurveNodes);
-  return (1 - at.upper_weight) * transmittance_[at.lower] + at.upper_weight * transmittance_[at.upper];
+Rgb DenseRest::transmittance(const Parameters& at, double cosine) const {
+  return transmittance_ ? transmittance_->at(at, cosine) : Rgb(1) - reflectance_->at(at, cosine);
 }
 
-Rgb DenseRest::decoded(const Rgb& remainder, double cos_i, double cos_o) const {
-  if (frame_) return frame_->decode(remainder, cos_i, cos_o, transmittance(cos_i), transmittance(cos_o));
+inline Rgb DenseRest::transmittance(double cosine) const {
+  const Bracket at = even_bracket(cosine, kCurveNodes);
+  return (1 - at.upper_weight) * transmittances_[at.lower] + at.upper_weight * transmittances_[at.upper];
+}
+
+Rgb DenseRest::remainder(const Parameters& at, const AngleCoordinates& angles) const {
+  const DenseAngles::Place place(*angles_, angles);
+  if (!axes_) return to_rgb(place.sum(remainder_.data()));
+  return to_rgb(
+      sum_over(*axes_, at.values(), [&](int offset) { return place.sum(remainder_.data() + offset); }));
+}
+
+Rgb DenseRest::decoded(const Parameters& at, const Rgb& remainder, double cos_i, double cos_o) const {
+  if (frame_ && !axes_)
+    return frame_->decode(remainder, cos_i, cos_o, transmittance(cos_i), transmittance(cos_o));
+  if (frame_)
+    return frame_->over(at.applied_to(material_))
+        .decode(remainder, cos_i, cos_o, transmittance(at, cos_i), transmittance(at, cos_o));
   if (is_full_) return remainder;
   return transform(remainder, [](double x) { return std::max(0.0, x); });
 }
 
-Rgb DenseRest::operator()(const Vec3& wo, const Vec3& wi) const {
-  return decoded(remainder(angles_->coordinates(wo, wi)), wi.z, wo.z);
+Rgb DenseRest::rest(const Parameters& at, const Vec3& wo, const Vec3& wi) const {
+  return decoded(at, remainder(at, angles_->coordinates(wo, wi)), wi.z, wo.z);
 }
 
 Rgb DenseRest::standard_error(const Vec3& wo, const Vec3& wi) const {
@@ -61,9 +120,15 @@ Rgb DenseRest::standard_error(const Vec3& wo, const Vec3& wi) const {
   return transform(error, [](double x) { return std::max(0.0, x); });
 }
 
+std::size_t DenseRest::bytes() const {
+  return remainder_.size() * sizeof(Color4) + (reflectance_ ? reflectance_->bytes() : 0) +
+         (transmittance_ ? transmittance_->bytes() : 0) + transmittances_.size() * sizeof(Rgb);
+}
+
 // Azimuths of an isotropic table are those of wi from wo; those of an anisotropic one are of a quadrant, and
 // wo mirrored stands for wi in the other three.
-DenseRest::AzimuthMean::AzimuthMean(const DenseRest& rest, const Vec3& wo) : rest_(rest), cos_o_(wo.z) {
+DenseRest::AzimuthMean::AzimuthMean(const DenseRest& rest, const Parameters& at, const Vec3& wo)
+    : rest_(rest), at_(at), cos_o_(wo.z) {
   const bool isotropic = rest.symmetry_ == Symmetry::isotropic;
   const Axis& axis = rest.angles_->axis(isotropic ? 3 : 1);
   const auto weights = mean_weights(axis);
@@ -81,8 +146,8 @@ DenseRest::AzimuthMean::AzimuthMean(const DenseRest& rest, const Vec3& wo) : res
 Rgb DenseRest::AzimuthMean::operator()(double cos_i) const {
   Rgb remainder;
   for (const Node& node : nodes_)
-    remainder += node.weight * rest_.remainder({cos_i, node.phi_i, cos_o_, node.phi_o});
-  return rest_.decoded(remainder, cos_i, cos_o_);
+    remainder += node.weight * rest_.remainder(at_, {cos_i, node.phi_i, cos_o_, node.phi_o});
+  return rest_.decoded(at_, remainder, cos_i, cos_o_);
 }
 
 }  // namespace sunbeam::inline v1

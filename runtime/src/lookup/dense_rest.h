@@ -1,4 +1,5 @@
-// The rest of a dense table (table.h) at one parameter point: flat arrays of single floats over the angles.
+// The rest of a dense table (sunbeam/table.h): flat arrays of single floats over the angles, at one parameter
+// point or over all of them. bake/dense/nodes.h makes the arrays; sunbeam/detail/rest_frame.h decodes them.
 #pragma once
 
 #include <optional>
@@ -9,18 +10,39 @@
 
 namespace sunbeam::inline v1 {
 
+// Axes (film_thickness_nm, base_ior, absorption_per_nm) or (film_thickness_nm, base_ior, cos_theta).
+using ThreeAxes = std::array<BoundAxis, 3>;
+
+// An array over (film_thickness_nm, base_ior, cos_theta).
+class DenseFilm {
+ public:
+  explicit DenseFilm(const NdArray& array);
+  Rgb at(const Parameters& at, double cosine) const;
+  std::size_t bytes() const { return nodes_.size() * sizeof(Color4); }
+
+ private:
+  ThreeAxes axes_;
+  std::vector<Color4> nodes_;
+};
+
+// Directions lie above the horizon.
 class DenseRest {
  public:
-  // `material` is that of the table with the parameters of the point, which lie in the grid.
+  // Over the whole table: its own arrays, interpolated at every look-up.
+  explicit DenseRest(const Table& table);
+  // At the parameters of `material`, which lie in the grid: the arrays are sliced. What parameters look-ups
+  // are given is then of no matter.
   DenseRest(const Table& table, const Material& material);
 
-  Rgb operator()(const Vec3& wo, const Vec3& wi) const;
+  // 1/sr.
+  Rgb rest(const Parameters& at, const Vec3& wo, const Vec3& wi) const;
+  // Of a table at one point.
   Rgb standard_error(const Vec3& wo, const Vec3& wi) const;
 
   // Mean of the rest over the azimuth of wi, at cosines of wi.
   class AzimuthMean {
    public:
-    AzimuthMean(const DenseRest& rest, const Vec3& wo);
+    AzimuthMean(const DenseRest& rest, const Parameters& at, const Vec3& wo);
     Rgb operator()(double cos_i) const;
 
    private:
@@ -29,24 +51,36 @@ class DenseRest {
       double weight;        // all add up to 1
     };
     const DenseRest& rest_;
+    Parameters at_;
     double cos_o_;
     std::vector<Node> nodes_;
   };
 
- private:
-  Rgb transmittance(double cosine) const;
-  Rgb remainder(const AngleCoordinates& at) const {
-    return to_rgb(DenseAngles::Place(*angles_, at).sum(remainder_.data()));
-  }
-  Rgb decoded(const Rgb& remainder, double cos_i, double cos_o) const;
+  // Of all points only.
+  const DenseFilm& reflectance() const { return *reflectance_; }
 
+  std::size_t bytes() const;
+
+ private:
+  Rgb transmittance(const Parameters& at, double cosine) const;  // of all points
+  Rgb transmittance(double cosine) const;                        // of one point
+  Rgb remainder(const Parameters& at, const AngleCoordinates& angles) const;
+  Rgb decoded(const Parameters& at, const Rgb& remainder, double cos_i, double cos_o) const;
+
+  Material material_;
   Symmetry symmetry_;
-  std::optional<RestFrame> frame_;  // none: the array holds the rest itself
   bool is_full_;
-  std::vector<Rgb> transmittance_;  // over even cosines
+  std::optional<RestFrame> frame_;  // none: the array holds the rest itself
   std::optional<DenseAngles> angles_;
   std::vector<Color4> remainder_;
-  NdArray stderr_;  // over the four angles
+
+  // Of all points.
+  std::optional<ThreeAxes> axes_;
+  std::optional<DenseFilm> reflectance_, transmittance_;
+
+  // Of one point.
+  std::vector<Rgb> transmittances_;  // over even cosines
+  NdArray stderr_;                   // over the four angles
 };
 
 }  // namespace sunbeam::inline v1

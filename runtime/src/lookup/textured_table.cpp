@@ -3,8 +3,9 @@
 #include <cmath>
 #include <type_traits>
 
+#include "runtime/src/fit/dense_albedos.h"
+#include "runtime/src/lookup/dense_rest.h"
 #include "runtime/src/lookup/facets.h"
-#include "runtime/src/lookup/textured_dense.h"
 #include "runtime/src/lookup/textured_rest.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/text.h"
@@ -46,14 +47,16 @@ struct TexturedData {
         frame(table.material),
         facets(table.material.roughness),
         smooth(table.material.is_smooth()) {
-    if (table.is_factored())
+    if (table.is_factored()) {
       rest.emplace(table);
-    else
+    } else {
       dense.emplace(table);
+      albedos.emplace(table);
+    }
     kind = !rest ? Kind::dense : rest->is_plain() ? Kind::plain : Kind::general;
   }
 
-  const EvenAxis& axis(std::size_t k) const { return kind == Kind::dense ? dense->axis(k) : rest->axis(k); }
+  const EvenAxis& axis(std::size_t k) const { return kind == Kind::dense ? albedos->axis(k) : rest->axis(k); }
   // Of the pigment relative to the parameter, as far as the rest decays with it.
   float mean_absorption() const {
     if (kind != Kind::dense) return rest->media().absorption[3];
@@ -93,8 +96,9 @@ struct TexturedData {
   // Factored, isotropic and of path "sum"; any other factored one; dense.
   enum class Kind { plain, general, dense } kind;
   Material material;
-  std::optional<TexturedRest> rest;    // of a factored table
-  std::optional<TexturedDense> dense;  // or of a dense one
+  std::optional<TexturedRest> rest;  // of a factored table
+  std::optional<DenseRest> dense;    // or of a dense one
+  std::optional<DenseAlbedos> albedos;
   TexturedMaterial frame;
   Facets facets;
   bool smooth;
@@ -121,9 +125,9 @@ struct TexturedGeneralViewer : TexturedViewer {
 // And of a dense one.
 struct TexturedDenseViewer {
   TexturedDenseViewer(const TexturedData& data, const Parameters& at, const Vec3& wo)
-      : facets(data.facets, wo), rest_albedo(data.dense->rest_albedo(at, std::min(facets.root, 1.0f))) {
+      : facets(data.facets, wo), rest_albedo(data.albedos->at(at, std::min(facets.root, 1.0f))) {
     const float cosine = std::min(std::sqrt(data.frame.film_cosine_squared(facets.cosine)), 1.0f);
-    first_albedo = std::max(0.0f, static_cast<float>(mean(data.dense->film_reflectance(at, double{cosine}))));
+    first_albedo = std::max(0.0f, static_cast<float>(mean(data.dense->reflectance().at(at, double{cosine}))));
     const float share = first_albedo / std::max(first_albedo + rest_albedo, 1e-9f);
     first_chance = std::clamp(share, kLeastChance, 1 - kLeastChance);
   }
@@ -134,7 +138,7 @@ struct TexturedDenseViewer {
 TexturedTable::TexturedTable(const Table& table) : data_(std::make_shared<TexturedData>(table)) {}
 
 std::size_t TexturedTable::bytes() const {
-  return data_->rest ? data_->rest->bytes() : data_->dense->bytes();
+  return data_->rest ? data_->rest->bytes() : data_->dense->bytes() + data_->albedos->bytes();
 }
 
 TexturedTable::At TexturedTable::at(const Parameters& p) const noexcept {
@@ -171,7 +175,7 @@ inline void TexturedTable::At::fold(std::span<const float> cosines, FloatRgb* re
 
 Rgb TexturedTable::At::dirac(const Vec3& wo) const {
   if (!data_->smooth || wo.z <= 0) return {};
-  if (data_->kind == Kind::dense) return data_->dense->film_reflectance(parameters_, std::min(wo.z, 1.0));
+  if (data_->kind == Kind::dense) return data_->dense->reflectance().at(parameters_, std::min(wo.z, 1.0));
   const auto cosine = static_cast<float>(wo.z);
   FloatRgb r;
   fold({&cosine, 1}, &r);
@@ -236,7 +240,7 @@ EvalPdf TexturedTable::At::eval_pdf(const TexturedDenseViewer& viewer, const Vec
   const Rgb rest = data_->dense->rest(parameters_, wo, wi);
   const float chance = viewer.first_chance, rest_pdf = (1 - chance) * rest_density_.pdf(pair.cosine);
   if (data_->smooth) return {rest, double{rest_pdf}};
-  const Rgb film = data_->dense->film_reflectance(parameters_, std::min(double{pair.half_cosine}, 1.0));
+  const Rgb film = data_->dense->reflectance().at(parameters_, std::min(double{pair.half_cosine}, 1.0));
   return {rest + double{pair.lobe} * film, double{rest_pdf + chance * pair.pdf}};
 }
 

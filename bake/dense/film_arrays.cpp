@@ -1,6 +1,6 @@
 #include "bake/dense/film_arrays.h"
 
-#include "bake/live/film/film_interface.h"
+#include "bake/live/film/geometry.h"
 #include "bake/optics/wavelength_quadrature.h"
 
 namespace sunbeam {
@@ -46,10 +46,7 @@ std::vector<Vec3> directions_at(double cosine, const Roughness& roughness) {
 // How much of the light at cosine i, a mean over its azimuth, meets facets of cosine j and gets through, film
 // aside: the mean transmittance of a rough film is this row times the film's transmittance at the cosines.
 std::vector<double> crossing_weights(const Material& material, const Axis& cosines) {
-  Material clear = material;  // a film without interfaces, bending like the real one, passes everything
-  clear.film_thickness_nm = 0;
-  const FilmInterface film(clear, Rgb(550));  // the same at every wavelength
-  const Ggx ggx(material.roughness);
+  const FilmGeometry film(material);
   const std::size_t n = cosines.size();
   std::vector<double> weights(n * n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -58,12 +55,12 @@ std::vector<double> crossing_weights(const Material& material, const Axis& cosin
       for (std::size_t k = 0; k < kNormalNodes * kNormalNodes; ++k) {
         const double u = (static_cast<double>(k % kNormalNodes) + 0.5) / kNormalNodes;
         const double v = (static_cast<double>(k / kNormalNodes) + 0.5) / kNormalNodes;
-        const Vec3 h = ggx.sample_visible(w, {u, v});
-        const auto crossing = film.cross(w, {h, {Rgb(0), Rgb(1)}, 0});
-        if (!crossing) continue;
+        const Vec3 h = film.visible_normal(w, {u, v});
+        const auto inside = film.cross(w, h);
+        if (!inside) continue;
         const Stencil at = cosines.stencil(dot(w, h));
         const double share =
-            crossing->weight.r / static_cast<double>(kNormalNodes * kNormalNodes * directions.size());
+            inside->share / static_cast<double>(kNormalNodes * kNormalNodes * directions.size());
         for (std::size_t j = 0; j < at.count; ++j) weights[i * n + at.node[j]] += share * at.weight[j];
       }
   }

@@ -7,7 +7,7 @@
 // visible normals.
 #pragma once
 
-#include "bake/live/film/film_interface.h"
+#include "bake/live/film/geometry.h"
 #include "bake/optics/fringes.h"
 #include "sunbeam/detail/axis.h"
 
@@ -23,8 +23,7 @@ struct Leg {
 // `material` must outlive the legs.
 class FilmLegs {
  public:
-  explicit FilmLegs(const Material& material)
-      : material_(material), film_(material, Rgb(550)), ggx_(material.roughness) {}
+  explicit FilmLegs(const Material& material) : material_(material), film_(material) {}
 
   // From outside along w to the base; the weights of a replicate add up to the share of w that facets let by.
   // strata^2 legs, one of a smooth film.
@@ -33,9 +32,9 @@ class FilmLegs {
     if (material_.is_smooth()) strata = 1;
     const double share = 1 / static_cast<double>(strata * strata);
     for (std::size_t k = 0; k < strata * strata; ++k) {
-      const Vec3 h = normal(w, stratum(k, strata, rng));
-      const auto crossing = film_.cross(w, {h, {Rgb(0), Rgb(1)}, 0});
-      if (crossing) visit(Leg{std::min(dot(w, h), 1.0), 0, crossing->inside.z, share * crossing->weight.r});
+      const Vec3 h = film_.visible_normal(w, stratum(k, strata, rng));
+      const auto inside = film_.cross(w, h);
+      if (inside) visit(Leg{std::min(dot(w, h), 1.0), 0, inside->direction.z, share * inside->share});
     }
   }
 
@@ -51,10 +50,9 @@ class FilmLegs {
         const double cosine =
             std::sqrt((static_cast<double>(i) + 1 - rng.uniform()) / static_cast<double>(up));
         const Vec3 m = direction_from_cosine(cosine, 2 * kPi * rng.uniform());
-        const Vec3 h = normal(m, stratum(k, strata, rng));
-        const auto mirrored = film_.reflect_down(m, {h, {Rgb(1), Rgb(0)}, 1});
-        if (mirrored)
-          visit(Leg{std::min(dot(m, h), 1.0), m.z, mirrored->direction.z, share * mirrored->weight.r});
+        const Vec3 h = film_.visible_normal(m, stratum(k, strata, rng));
+        const auto down = film_.mirror(m, h);
+        if (down) visit(Leg{std::min(dot(m, h), 1.0), m.z, down->direction.z, share * down->share});
       }
   }
 
@@ -64,13 +62,9 @@ class FilmLegs {
     const double u = rng.uniform(), v = rng.uniform();
     return {(static_cast<double>(k % strata) + u) / n, (static_cast<double>(k / strata) + v) / n};
   }
-  Vec3 normal(const Vec3& w, const Point2& u) const {
-    return material_.is_smooth() ? Vec3{0, 0, 1} : ggx_.sample_visible(w, u);
-  }
 
   const Material& material_;
-  FilmInterface film_;
-  Ggx ggx_;
+  FilmGeometry film_;
 };
 
 // Powers of one film at all nodes of a fringe axis, for one facet cosine after the other.

@@ -34,7 +34,7 @@ void estimate(benchmark::State& state, Technique technique) {
   const Vec3 wi = spherical_direction(pair[1] * kPi / 180, pair[2] * kPi / 180);
   const Pfmc model(material, one_channel(material));
   const test::PlainWalk plain(material, Rgb(kWavelengthNm));
-  const FilmInterface plain_film(material, Rgb(kWavelengthNm));
+  const test::FacetedFilm plain_film(material, Rgb(kWavelengthNm));
   Account live, yardstick;
   Rng rng(1, 0), plain_rng(2, 0);
   for (auto _ : state) {

@@ -8,10 +8,10 @@
 #include <limits>
 #include <optional>
 
-#include "bake/live/film/film_interface.h"
 #include "sunbeam/core/rng.h"
 #include "sunbeam/detail/warp.h"
 #include "tests/support/direction_cells.h"
+#include "tests/support/plain_film.h"
 
 namespace sunbeam::test {
 
@@ -63,7 +63,7 @@ class PlainFilm {
   }
 
  private:
-  FilmInterface film_;
+  FacetedFilm film_;
 };
 
 template <class Film>

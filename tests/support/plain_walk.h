@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "bake/live/film/film_interface.h"
 #include "tests/support/plain_base.h"
+#include "tests/support/plain_film.h"
 
 namespace sunbeam::test {
 
@@ -64,7 +64,7 @@ class PlainWalk {
     return true;
   }
 
-  FilmInterface film_;
+  FacetedFilm film_;
   PigmentedBase base_;
   double radiance_scale_;
   double brightest_albedo_;

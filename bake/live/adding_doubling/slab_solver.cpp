@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/live/film/microsurface.h"
 #include "bake/optics/compiler.h"
 #include "bake/optics/quadrature.h"
 #include "sunbeam/core/error.h"
@@ -42,16 +41,16 @@ double mean_decay(double x) { return x > 0 ? -std::expm1(-x) / x : 1; }
 
 // Facets that a direction at `cosine` and azimuth 0 sees, on one side of its plane: calls visit(h, share).
 template <class Visit>
-void each_facet(const Ggx& ggx, bool is_smooth, double cosine, const SlabSolver::Resolution& resolution,
+void each_facet(const FilmGeometry& film, double cosine, const SlabSolver::Resolution& resolution,
                 Visit visit) {
-  if (is_smooth) return visit(Vec3{0, 0, 1}, 1.0);
+  if (film.is_smooth()) return visit(Vec3{0, 0, 1}, 1.0);
   const GaussRule cap =
       gauss_legendre(resolution.across);  // over t, 1 - t^2 the share of the cap: long tails
   const Vec3 w = direction_from_cosine(cosine, 0);
   for (int a = 0; a < resolution.around; ++a)
     for (int c = 0; c < cap.size(); ++c) {
       const double t = cap.node[c];
-      visit(ggx.sample_visible(w, {(a + 0.5) / (2 * resolution.around), 1 - t * t}),
+      visit(film.visible_normal(w, {(a + 0.5) / (2 * resolution.around), 1 - t * t}),
             2 * t * cap.weight[c] / resolution.around);
     }
 }
@@ -148,7 +147,9 @@ SlabSolver::Nodes::Stencil SlabSolver::Nodes::at(double m) const {
 
 SlabSolver::SlabSolver(const Material& material, std::vector<double> cosines, Resolution resolution)
     : material_(material),
-      interface_(material, Wavelengths::rgb3(material)),
+      geometry_(material),
+      film_(ThinFilm::of(material)),
+      film_below_(ThinFilm::below(material)),
       cosines_(std::move(cosines)),
       resolution_(resolution),
       nodes_(make_nodes(material, resolution)),
@@ -173,26 +174,20 @@ SlabSolver::Facet SlabSolver::facet(double cosine, double share, const Vec3& on)
 }
 
 SlabSolver::Facets SlabSolver::facets_of_entry(const Vec3& w) const {
-  const Ggx ggx(material_.roughness);
   Facets facets;
-  each_facet(ggx, interface_.is_smooth(), w.z, resolution_, [&](const Vec3& h, double share) {
-    Vec3 m = w;
-    if (interface_.bends && (!walk::refract(w, h, interface_.index_ratio, m) || m.z <= 0)) return;
-    const bool is_shadowed = !interface_.straight && !interface_.is_smooth();
-    facets.push_back(facet(dot(w, h), share * (is_shadowed ? ggx.g2_over_g1(w, m) : 1), m));
+  each_facet(geometry_, w.z, resolution_, [&](const Vec3& h, double share) {
+    if (const auto inside = geometry_.cross(w, h))
+      facets.push_back(facet(dot(w, h), share * inside->share, inside->direction));
   });
   return facets;
 }
 
 SlabSolver::Facets SlabSolver::facets_thrown_back(int from) const {
-  const Ggx ggx(material_.roughness);
   const Vec3 u = direction_from_cosine(nodes_.cosine[from], 0);
   Facets facets;
-  each_facet(ggx, interface_.is_smooth(), u.z, resolution_, [&](const Vec3& h, double share) {
-    const Vec3 m = reflect(u, h);
-    if (m.z <= 0) return;
-    const double kept = share * (interface_.is_smooth() ? 1 : ggx.g2_over_g1(u, m));
-    facets.push_back(facet(dot(u, h), nodes_.root[from] * kept, m));
+  each_facet(geometry_, u.z, resolution_, [&](const Vec3& h, double share) {
+    if (const auto down = geometry_.mirror(u, h))
+      facets.push_back(facet(dot(u, h), nodes_.root[from] * (share * down->share), down->direction));
   });
   return facets;
 }
@@ -286,7 +281,7 @@ std::vector<double> SlabSolver::transmittances(std::span<const double> orders, s
   std::array<double, kMostWavelengths> reflectance;
   std::vector<double> sums(orders.size());
   for (const Facet& facet : entry_[cosine]) {
-    walk::best_kernels().reflectances(interface_.film, phases, facet.cosine, reflectance.data());
+    walk::best_kernels().reflectances(film_, phases, facet.cosine, reflectance.data());
     for (std::size_t j = 0; j < sums.size(); ++j) sums[j] += facet.share * (1 - reflectance[j]);
   }
   return sums;
@@ -312,9 +307,8 @@ std::vector<double> SlabSolver::moments(const std::vector<Facets>& rows, const w
 }
 
 SlabSolver::Fringes::Fringes(const SlabSolver& solver, std::span<const double> orders) : solver_(solver) {
-  const std::vector<double> entry = solver.moments(solver.entry_, solver.interface_.film, true, orders);
-  const std::vector<double> back =
-      solver.moments(solver.thrown_back_, solver.interface_.film_below, false, orders);
+  const std::vector<double> entry = solver.moments(solver.entry_, solver.film_, true, orders);
+  const std::vector<double> back = solver.moments(solver.thrown_back_, solver.film_below_, false, orders);
   const int n = solver.nodes_.size(), cosines = static_cast<int>(solver.cosines_.size());
   modes_.resize(orders.size(), std::vector<Mode>(solver.modes_, {Matrix(cosines, n), Matrix(n)}));
   const double *e = entry.data(), *f = back.data();

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "bake/live/exact/dense.h"
+#include "bake/live/film/geometry.h"
 #include "bake/live/general/slab.h"
 #include "bake/live/walks/kernels.h"
 #include "sunbeam/detail/angles.h"
@@ -62,8 +63,8 @@ class SlabSolver {
 
   // What a film at one fringe order over a pigment of one depth sends back, 1/sr.
   struct Response {
-    std::vector<Matrix>
-        slab;        // per mode: light that never reaches the base, between the cosines of wo and wi
+    // Per mode: light that never reaches the base, between the cosines of wo and wi.
+    std::vector<Matrix> slab;
     Vector arrived;  // at the base, from each cosine; times the root of s / pi
     double returned = 0;
 
@@ -140,8 +141,8 @@ class SlabSolver {
     double share;    // of the light, shadowing included
     double azimuth;  // cosine of the azimuth of where it goes on
     int first_node;  // around the cosine of where it goes on
-    std::array<double, Nodes::kStencil> even,
-        odd;  // its part in moments at these nodes, of even and odd modes
+    // Its part in moments at these nodes, of even and odd modes.
+    std::array<double, Nodes::kStencil> even, odd;
   };
   using Facets = std::vector<Facet>;
 
@@ -167,15 +168,16 @@ class SlabSolver {
   void double_up(int mode, double depth, Matrix& r, Matrix& t) const;
 
   Material material_;
-  walk::Layers interface_;  // for the film's interface alone
+  FilmGeometry geometry_;
+  walk::FilmSide film_, film_below_;  // as seen from outside and from below
   std::vector<double> cosines_;
   Resolution resolution_;
   Nodes nodes_;
   int terms_;                                // of the phase function's Legendre series
   int modes_;                                // of the azimuth
   std::vector<Facets> entry_, thrown_back_;  // by cosine; by node
-  std::mutex mutex_;                         // of
   std::map<double, Layer> layers_;
+  std::mutex mutex_;  // guards layers_
 };
 
 }  // namespace sunbeam

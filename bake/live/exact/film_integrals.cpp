@@ -39,11 +39,11 @@ FilmIntegrals::FilmIntegrals(const Material& material, const Rgb& wavelengths_nm
                              const ExactResolution& resolution)
     : material_(material),
       resolution_(resolution),
-      interface_(material, wavelengths_nm),
+      geometry_(material),
       film_(ThinFilm::of(material)),
       film_below_(ThinFilm::below(material)),
       wavelengths_nm_(wavelengths_nm),
-      index_ratio_(interface_.has_glossy_crossing() ? material.exterior_ior / material.base_ior : 1),
+      index_ratio_(geometry_.has_glossy_crossing() ? material.exterior_ior / material.base_ior : 1),
       basis_(resolution.per_panel),
       cosine_panel_(resolution.cosines),
       fine_(gauss_legendre(kFineNodes)),
@@ -89,15 +89,14 @@ void FilmIntegrals::visit_visible(const Vec3& w, bool only_mirrored, F visit) co
 }
 
 std::vector<Passage> FilmIntegrals::passages(const Vec3& w) const {
-  const FilmPower all{Rgb(0), Rgb(1)};
   std::vector<Passage> result;
   const auto add = [&](const Vec3& from, const Vec3& normal, double weight) {
     const double cosine = std::clamp(dot(from, normal), 0.0, 1.0);
-    if (const auto crossing = interface_.cross(from, {normal, all, 0}))
-      result.push_back({cosine, crossing->inside.z, weight * crossing->weight.r});
+    if (const auto inside = geometry_.cross(from, normal))
+      result.push_back({cosine, inside->direction.z, weight * inside->share});
   };
   if (w.z <= 0) return result;
-  if (interface_.is_smooth())
+  if (geometry_.is_smooth())
     add(w, {0, 0, 1}, 1);
   else
     visit_visible(w, false, add);
@@ -106,11 +105,11 @@ std::vector<Passage> FilmIntegrals::passages(const Vec3& w) const {
 
 Rgb FilmIntegrals::first_albedo(const Vec3& w) const {
   if (w.z <= 0) return {};
-  if (interface_.is_smooth()) return interface_.power(w.z).reflectance;
+  if (geometry_.is_smooth()) return power(w.z).reflectance;
   Rgb sum;
   visit_visible(w, true, [&](const Vec3& from, const Vec3& normal, double weight) {
-    const FilmPower power = interface_.power(std::clamp(dot(from, normal), 0.0, 1.0));
-    if (const auto up = interface_.reflect_up(from, {normal, power, 0})) sum += up->weight * weight;
+    if (const auto up = geometry_.mirror(from, normal))
+      sum += power(std::clamp(dot(from, normal), 0.0, 1.0)).reflectance * up->share * weight;
   });
   return sum;
 }
@@ -219,7 +218,7 @@ void FilmIntegrals::add_smooth_reflection(double low, double high, std::array<Ma
 
 std::array<Matrix, 3> FilmIntegrals::reflection() const {
   std::array<Matrix, 3> sum{Matrix(basis_.size()), Matrix(basis_.size()), Matrix(basis_.size())};
-  if (interface_.is_smooth()) {
+  if (geometry_.is_smooth()) {
     const double critical = critical_cosine(film_below_);
     for (int p = 0; p < CosineBasis::kPanels; ++p) {
       const double low = CosineBasis::kEdges[p], high = CosineBasis::kEdges[p + 1];
@@ -242,7 +241,7 @@ std::array<Matrix, 3> FilmIntegrals::reflection() const {
 
 std::array<Vector, 3> FilmIntegrals::exit(const std::array<Matrix, 3>& reflection) const {
   std::array<Vector, 3> sum;
-  if (interface_.is_smooth()) {  // what is not reflected leaves
+  if (geometry_.is_smooth()) {  // what is not reflected leaves
     for (int channel = 0; channel < 3; ++channel) {
       sum[channel] = multiply(Vector(basis_.size(), -1.0), reflection[channel]);
       add_scaled(1, basis_.cosine_weights().data(), basis_.size(), sum[channel].data());

@@ -1,4 +1,4 @@
-// The film as integrals over its facets, by quadrature: what FilmInterface draws at random, summed up.
+// The film as integrals over its facets, by quadrature: what walks draw at random, summed up.
 //
 // Over a base without azimuth light below the film is known by its polar cosine alone: an anisotropic film
 // acts on it by the mean over the azimuth of what comes from below, which is that over all turns of its
@@ -12,7 +12,8 @@
 #include "bake/live/exact/cosine_basis.h"
 #include "bake/live/exact/dense.h"
 #include "bake/live/film/facet_turns.h"
-#include "bake/live/film/film_interface.h"
+#include "bake/live/film/geometry.h"
+#include "bake/optics/thin_film.h"
 
 namespace sunbeam {
 
@@ -38,14 +39,12 @@ class FilmIntegrals {
 
   const CosineBasis& basis() const { return basis_; }
   // False if facets bend light, so that passages() is a quadrature over many cosines.
-  bool has_single_crossing() const { return !interface_.has_glossy_crossing(); }
+  bool has_single_crossing() const { return !geometry_.has_glossy_crossing(); }
 
   // Ways of light along w, for all wavelengths not shorter than those of this object; none under total
   // reflection. p_t(w -> m) dm is share times transmittance() at m.z = cosine.
   std::vector<Passage> passages(const Vec3& w) const;
-  Rgb transmittance(const Passage& passage) const {
-    return interface_.power(passage.facet_cosine).transmittance;
-  }
+  Rgb transmittance(const Passage& passage) const { return power(passage.facet_cosine).transmittance; }
 
   // Directional albedo of the first surface, a smooth film's Dirac included.
   Rgb first_albedo(const Vec3& w) const;
@@ -65,6 +64,8 @@ class FilmIntegrals {
   };
   enum class Event { reflection_below, passage };
 
+  // From outside.
+  FilmPower power(double facet_cosine) const { return airy(film_, facet_cosine, wavelengths_nm_); }
   const ThinFilm& film_of(Event event) const { return event == Event::passage ? film_ : film_below_; }
   double phase(const ThinFilm& film, double cosine) const;
   int visible_nodes() const;
@@ -84,7 +85,7 @@ class FilmIntegrals {
 
   Material material_;
   ExactResolution resolution_;
-  FilmInterface interface_;
+  FilmGeometry geometry_;
   ThinFilm film_, film_below_;
   Rgb wavelengths_nm_;
   double index_ratio_;  // n0 / n2 if facets bend light, else 1

@@ -1,7 +1,7 @@
 // What can happen to a packet of directions at the film and at the base, for the walks.
 //
 // The base forgets azimuth, so a walk carries polar cosines alone; where two directions meet at a facet their
-// azimuths are drawn anew. Sides, weights and densities are those of film_interface.h. Lost lanes go on with
+// azimuths are drawn anew. Sides, weights and densities are those of film/geometry.h. Lost lanes go on with
 // weight 0, cosine 1 and density 1.
 #pragma once
 

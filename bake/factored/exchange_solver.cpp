@@ -1,5 +1,6 @@
 #include "bake/factored/exchange_solver.h"
 
+#include "bake/live/exact/resolvent.h"
 #include "sunbeam/detail/factors.h"
 
 namespace sunbeam {
@@ -37,12 +38,12 @@ ExchangeSolver::Arrived ExchangeSolver::bent(Vector p, double m) const {
 // kd f_i^T B y_o.
 Matrix ExchangeSolver::later_visits(std::span<const Arrived> ends, const Matrix& b, double albedo) const {
   const int count = static_cast<int>(ends.size());
-  Matrix system = multiply(f_, b), right(kNodes, count), result(count);
+  Matrix again = multiply(f_, b), first(kNodes, count), result(count);
   for (int a = 0; a < kNodes; ++a) {
-    for (int c = 0; c < kNodes; ++c) system.row(a)[c] = (a == c ? 1 : 0) - albedo * system.row(a)[c];
-    for (int o = 0; o < count; ++o) right.row(a)[o] = ends[o].f[a];
+    for (int c = 0; c < kNodes; ++c) again.row(a)[c] *= albedo;
+    for (int o = 0; o < count; ++o) first.row(a)[o] = ends[o].f[a];
   }
-  const Matrix y = solve(system, right);
+  const Matrix y = resolvent(std::move(again), std::move(first));
   for (int i = 0; i < count; ++i) {
     Vector sent = multiply(ends[i].f, b);
     for (double& x : sent) x *= albedo;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bake/live/exact/resolvent.h"
 #include "bake/optics/compiler.h"
 #include "bake/optics/quadrature.h"
 #include "sunbeam/core/error.h"
@@ -91,14 +92,14 @@ struct ModeResponse {
 };
 SUNBEAM_FLAT_VECTOR_CLONES ModeResponse respond(const Matrix& back, const Matrix& r, Matrix enters,
                                                 const Matrix& sees) {
-  ModeResponse response{solve(one_minus(multiply(back, r)), std::move(enters)), {}};
+  ModeResponse response{resolvent(multiply(back, r), std::move(enters)), {}};
   response.slab = multiply(multiply(sees, r), response.down);
   return response;
 }
 
 // Two of a layer of reflection r and transmission t.
 SUNBEAM_FLAT_VECTOR_CLONES void double_layer(Matrix& r, Matrix& t) {
-  const Matrix x = solve(one_minus(multiply(r, r)), t), tx = multiply(t, multiply(r, x));
+  const Matrix x = resolvent(multiply(r, r), t), tx = multiply(t, multiply(r, x));
   t = multiply(t, x);
   for (int i = 0; i < r.size(); ++i) add_scaled(1, tx.row(i), r.size(), r.row(i));
   symmetrise(r);

@@ -1,5 +1,7 @@
 #include "bake/live/exact/exact.h"
 
+#include "bake/live/exact/resolvent.h"
+
 namespace sunbeam {
 
 ExactTriple::ExactTriple(const Material& material, const Rgb& wavelengths_nm, const Rgb& albedo,
@@ -49,10 +51,7 @@ void ExactTriple::solve_product(const Matrices& reflection, const Vectors& exit)
     for (int c = 0; c < 3; ++c) add_scaled(base_albedo_[c], v[c].data(), n, f[c].row(i));
   }
   for (int c = 0; c < 3; ++c) {
-    Matrix system = multiply(reflection[c], f[c]);  // 1 - B F
-    for (int i = 0; i < n; ++i)
-      for (int k = 0; k < n; ++k) system.row(i)[k] = (i == k ? 1 : 0) - system.row(i)[k];
-    Matrix m = solve(std::move(system), reflection[c]);
+    Matrix m = resolvent(multiply(reflection[c], f[c]), reflection[c]);
     symmetrise(m);
     exit_[c] = multiply(multiply(exit[c], f[c]), m);
     add_scaled(1, exit[c].data(), n, exit_[c].data());

@@ -1,21 +1,11 @@
 // The running mean of one tabulated value and how well it is known.
 #pragma once
 
-#include "sunbeam/core/vec.h"
+#include "bake/base/error_floor.h"
 
 namespace sunbeam {
 
-// Below this albedo errors count as if it were this: the floor of verify's denominators. Values darker than
-// its Lambertian value (1/sr) need no better absolute noise than at it.
-inline constexpr double kDarkestAlbedo = 0.002;
-inline constexpr double kDarkestValue = kDarkestAlbedo * kInvPi;
-
-// Folded colours may have negative components.
-inline double mean_abs(const Rgb& a) {
-  return mean(transform(a, [](double x) { return std::abs(x); }));
-}
-
-class Cell {
+class RunningMean {
  public:
   void add(const Rgb& estimate) {
     sum_ += estimate;

@@ -121,7 +121,7 @@ struct Estimate {
 
 template <class Call>
 Estimate mean_of_estimates(std::int64_t samples, Call call) {
-  Cell cell;
+  RunningMean cell;
   for (std::int64_t k = 0; k < samples; ++k) cell.add(call());
   const auto count = static_cast<double>(samples);
   return {cell.mean_of(count), cell.standard_error(count)};

@@ -53,14 +53,14 @@ struct WalkedRest {
 WalkedRest walk_rest(const Pfmc& model, Technique technique, const Vec3& wi, const std::vector<Vec3>& wo,
                      int estimates, Rng& rng) {
   const int batch_estimates = estimates / kBatches;
-  std::vector<Cell> cells(wo.size());
+  std::vector<RunningMean> cells(wo.size());
   for (int batch = 0; batch < kBatches; ++batch) {
     std::vector<Rgb> sums(wo.size());
     for (int k = 0; k < batch_estimates; ++k) model.add_rest(wi, wo, rng, sums, technique);
     for (std::size_t k = 0; k < wo.size(); ++k) cells[k].add(sums[k] / batch_estimates);
   }
   WalkedRest rest;
-  for (const Cell& cell : cells) {
+  for (const RunningMean& cell : cells) {
     rest.value.push_back(cell.mean_of(kBatches));
     rest.expected_difference.push_back(cell.standard_error(kBatches) * (2 / std::sqrt(kPi)));
   }

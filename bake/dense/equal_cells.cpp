@@ -5,26 +5,26 @@
 
 namespace sunbeam {
 
-Orbits::Orbits(bool is_isotropic, std::size_t cosines, std::size_t azimuths)
+EqualCells::EqualCells(bool is_isotropic, std::size_t cosines, std::size_t azimuths)
     : is_isotropic_(is_isotropic), cosines_(cosines), azimuths_(azimuths) {
   const std::size_t azimuths_i = is_isotropic ? 1 : azimuths_ / 4 + 1;
   std::map<std::size_t, Cells> by_key;
   for (std::size_t i = 0; i < cosines_ * azimuths_i; ++i)
     for (std::size_t o = 0; o < cosines_ * azimuths_; ++o)
       by_key[key({i / azimuths_i, i % azimuths_i}, {o / azimuths_, o % azimuths_})].emplace_back(i, o);
-  for (auto& [key, cells] : by_key) orbits_.push_back(std::move(cells));
+  for (auto& [key, cells] : by_key) classes_.push_back(std::move(cells));
 }
 
-void Orbits::average(Rows& values) const {
-  for (const Cells& cells : orbits_) {
+void EqualCells::average(Rows& values) const {
+  for (const Cells& cells : classes_) {
     Rgb sum;
     for (const auto& [row, place] : cells) sum += values[row][place];
     spread(sum / static_cast<double>(cells.size()), cells, values);
   }
 }
 
-void Orbits::average_errors(Rows& errors) const {
-  for (const Cells& cells : orbits_) {
+void EqualCells::average_errors(Rows& errors) const {
+  for (const Cells& cells : classes_) {
     Rgb variance, row_error;
     for (std::size_t k = 0; k < cells.size(); ++k) {
       const auto [row, place] = cells[k];
@@ -38,12 +38,12 @@ void Orbits::average_errors(Rows& errors) const {
   }
 }
 
-std::size_t Orbits::number(const End& i, const End& o) const {
+std::size_t EqualCells::number(const End& i, const End& o) const {
   return ((i.cosine * azimuths_ + i.azimuth) * cosines_ + o.cosine) * azimuths_ + o.azimuth;
 }
 
-// The least number of all cells in the orbit.
-std::size_t Orbits::key(End i, End o) const {
+// The least number of all cells in its class.
+std::size_t EqualCells::key(End i, End o) const {
   const std::size_t pole = cosines_ - 1;
   if (is_isotropic_) {
     if (i.cosine == pole || o.cosine == pole) o.azimuth = 0;
@@ -65,7 +65,7 @@ std::size_t Orbits::key(End i, End o) const {
   return least;
 }
 
-void Orbits::spread(const Rgb& mean, const Cells& cells, Rows& rows) {
+void EqualCells::spread(const Rgb& mean, const Cells& cells, Rows& rows) {
   for (const auto& [row, place] : cells) rows[row][place] = mean;
 }
 

@@ -14,12 +14,13 @@ namespace sunbeam {
 // One number a cell: for each wi, those of every wo of the table. The rest or its standard error, 1/sr.
 using Rows = std::vector<std::vector<Rgb>>;
 
-class Orbits {
+class EqualCells {
  public:
   // `azimuths` over phi_o as in Recipe; a film is isotropic or has azimuths / 4 + 1 of them over phi_i.
-  Orbits(bool is_isotropic, std::size_t cosines, std::size_t azimuths);
+  EqualCells(bool is_isotropic, std::size_t cosines, std::size_t azimuths);
 
-  // Replaces the values of each orbit by their mean: less noise, and symmetries hold to the last bit.
+  // Replaces the values of each class of equal cells by their mean: less noise, and symmetries hold to the
+  // last bit.
   void average(Rows& values) const;
   // The standard errors of these means. Cells of a row share their walks, so their errors add up; those of
   // different rows do not.
@@ -38,7 +39,7 @@ class Orbits {
 
   bool is_isotropic_;
   std::size_t cosines_, azimuths_;
-  std::vector<Cells> orbits_;
+  std::vector<Cells> classes_;
 };
 
 }  // namespace sunbeam

@@ -56,8 +56,8 @@ std::vector<Axis> rest_axes(const Recipe& recipe) {
 DenseNodes::DenseNodes(const Recipe& recipe)
     : recipe_(recipe),
       size_(recipe.grid[0].size() * recipe.grid[1].size() * recipe.grid[2].size()),
-      orbits_(symmetry_of(recipe) == Symmetry::isotropic, static_cast<std::size_t>(recipe.table.angles),
-              static_cast<std::size_t>(recipe.table.azimuths)) {
+      equal_cells_(symmetry_of(recipe) == Symmetry::isotropic, static_cast<std::size_t>(recipe.table.angles),
+                   static_cast<std::size_t>(recipe.table.azimuths)) {
   outline_.material = recipe.material;
   outline_.symmetry = symmetry_of(recipe);
   outline_.frame = recipe.table.frame;
@@ -77,7 +77,7 @@ Parameters DenseNodes::parameters(std::size_t node) const {
 }
 
 std::vector<float> DenseNodes::remainder(std::size_t node, Rows rest) const {
-  orbits_.average(rest);
+  equal_cells_.average(rest);
   if (outline_.frame == FrameKind::closed) frame(node, rest);
   std::vector<float> result;
   for (const std::vector<Rgb>& row : rest)
@@ -87,7 +87,7 @@ std::vector<float> DenseNodes::remainder(std::size_t node, Rows rest) const {
 }
 
 std::vector<float> DenseNodes::rest_stderr(Rows errors) const {
-  orbits_.average_errors(errors);
+  equal_cells_.average_errors(errors);
   std::vector<float> result;
   for (const std::vector<Rgb>& row : errors)
     for (const Rgb& error : row) result.push_back(round_to(Precision::single_float, coarse(mean(error))));

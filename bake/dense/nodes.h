@@ -42,7 +42,7 @@ class DenseNodes {
   Table outline_;
   std::vector<Vec3> wi_, wo_;
   std::size_t size_;
-  Orbits orbits_;
+  EqualCells equal_cells_;
   std::optional<RestFrame> frame_;
 };
 

@@ -22,10 +22,10 @@ class RowWalks {
 
   // Appends the values of the directions that share walks: they go on until all of them are known.
   void add(std::span<const Vec3> wo) {
-    std::vector<Cell> cells(wo.size());
+    std::vector<RunningMean> cells(wo.size());
     std::vector<Rgb> estimate(wo.size());
     int estimates = 0;
-    const auto is_known = [&](const Cell& c) { return c.is_known(noise_, estimates); };
+    const auto is_known = [&](const RunningMean& c) { return c.is_known(noise_, estimates); };
     for (int target = kFirstBatch; target <= kMostEstimates; target *= 2) {
       for (; estimates < target; ++estimates) {
         std::fill(estimate.begin(), estimate.end(), Rgb());
@@ -34,7 +34,7 @@ class RowWalks {
       }
       if (std::all_of(cells.begin(), cells.end(), is_known)) break;
     }
-    for (const Cell& cell : cells) {
+    for (const RunningMean& cell : cells) {
       values_.push_back(cell.mean_of(estimates));
       errors_.push_back(cell.standard_error(estimates));
       worst_ = std::max(worst_, cell.relative_error(estimates));

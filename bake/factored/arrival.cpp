@@ -1,6 +1,6 @@
 #include "bake/factored/arrival.h"
 
-#include "bake/base/running_mean.h"
+#include "bake/base/error_floor.h"
 #include "bake/blocks/block_bytes.h"
 #include "bake/factored/legs.h"
 #include "bake/live/exact/dense.h"
@@ -12,7 +12,7 @@ constexpr Strata kFacetStrata{16, 256};  // each way
 constexpr double kLeastArrival = 1e-30;  // where it is divided by or its logarithm taken
 
 // A at (depth, order), row-major, of one replicate.
-std::vector<double> arrivals(const FactoredBake& bake, const FilmLegs& legs, FringePowers& powers,
+std::vector<double> arrivals(const SharedInputs& bake, const FilmLegs& legs, FringePowers& powers,
                              std::size_t direction, std::size_t strata, std::size_t replicate,
                              std::uint64_t& count) {
   const Axis& depths = bake.outline.arrival.axes()[1];
@@ -39,7 +39,7 @@ double worst_error(const Replicates& a) {
 }
 
 // A with as many strata as its noise asks for.
-Replicates known_arrivals(const FactoredBake& bake, const Material& material, std::size_t direction,
+Replicates known_arrivals(const SharedInputs& bake, const Material& material, std::size_t direction,
                           BlockSummary& summary) {
   const NdArray& array = bake.outline.arrival;
   const FilmLegs legs(material);
@@ -56,7 +56,7 @@ Replicates known_arrivals(const FactoredBake& bake, const Material& material, st
 
 }  // namespace
 
-Block walk_arrival(const FactoredBake& bake, std::size_t ior, std::size_t direction) {
+Block walk_arrival(const SharedInputs& bake, std::size_t ior, std::size_t direction) {
   const Material material = bake.material_at(ior);
   const std::vector<Axis>& axes = bake.outline.arrival.axes();
   Block block;

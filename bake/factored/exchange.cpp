@@ -28,7 +28,7 @@ Vector at_order(const std::vector<double>& rows, std::size_t order, std::size_t 
 
 }  // namespace
 
-ExchangeWalks::ExchangeWalks(const FactoredBake& bake) : bake_(bake) {
+ExchangeWalks::ExchangeWalks(const SharedInputs& bake) : bake_(bake) {
   for (const double depth : axes()[1].nodes) solvers_.emplace_back(depth);
 }
 

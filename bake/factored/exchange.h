@@ -4,14 +4,14 @@
 
 #include "bake/blocks/job.h"
 #include "bake/factored/exchange_solver.h"
-#include "bake/factored/factored_bake.h"
+#include "bake/factored/shared_inputs.h"
 
 namespace sunbeam {
 
 // `bake` must outlive it.
 class ExchangeWalks {
  public:
-  explicit ExchangeWalks(const FactoredBake& bake);
+  explicit ExchangeWalks(const SharedInputs& bake);
 
   // Parts of the fringe orders.
   std::size_t parts() const;
@@ -37,7 +37,7 @@ class ExchangeWalks {
                                                std::size_t order, std::size_t orders) const;
   const std::vector<Axis>& axes() const { return bake_.outline.exchange.axes(); }
 
-  const FactoredBake& bake_;
+  const SharedInputs& bake_;
   std::vector<ExchangeSolver> solvers_;  // one an optical depth
 };
 

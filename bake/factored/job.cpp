@@ -89,7 +89,7 @@ class FactoredJob : public BakeJob {
     return variance;
   }
 
-  FactoredBake bake_;
+  SharedInputs bake_;
   std::size_t arrival_tasks_;
   std::optional<ExchangeWalks> exchange_;  // path "product"
 };

@@ -1,6 +1,6 @@
 #include "bake/factored/returned.h"
 
-#include "bake/base/running_mean.h"
+#include "bake/base/error_floor.h"
 #include "bake/blocks/block_bytes.h"
 #include "bake/live/exact/dense.h"
 
@@ -17,7 +17,7 @@ Axis thinned(Axis orders) {
 }
 
 // What the film sends back, all told, at each order.
-Replicates all_returned(const FactoredBake& bake, const FilmLegs& legs, FringePowers& powers, std::size_t up,
+Replicates all_returned(const SharedInputs& bake, const FilmLegs& legs, FringePowers& powers, std::size_t up,
                         std::uint64_t& walks) {
   Replicates returned(powers.reflectance.size());
   for (std::size_t r = 0; r < kReplicates; ++r) {
@@ -44,7 +44,7 @@ double worst_error(const Replicates& returned, double kd) {
 
 }  // namespace
 
-std::size_t strata_of_returns(const FactoredBake& bake, const Material& material, const FilmLegs& legs,
+std::size_t strata_of_returns(const SharedInputs& bake, const Material& material, const FilmLegs& legs,
                               BlockSummary& summary) {
   const Factors& outline = bake.outline;
   const Axis& orders = bake.has_exchange() ? outline.exchange.axes()[3] : outline.returned.axes()[2];
@@ -58,7 +58,7 @@ std::size_t strata_of_returns(const FactoredBake& bake, const Material& material
   }
 }
 
-Block walk_returned(const FactoredBake& bake, std::size_t ior) {
+Block walk_returned(const SharedInputs& bake, std::size_t ior) {
   const std::vector<Axis>& axes = bake.outline.returned.axes();
   const std::vector<double>& depths = axes[1].nodes;
   const std::size_t orders = axes[2].size();

@@ -3,19 +3,19 @@
 #pragma once
 
 #include "bake/blocks/job.h"
-#include "bake/factored/factored_bake.h"
 #include "bake/factored/legs.h"
+#include "bake/factored/shared_inputs.h"
 
 namespace sunbeam {
 
 // How many strata over the base's cosine the recipe's accuracy.noise asks for; the walks that this took and
 // the noise go to `summary`.
-std::size_t strata_of_returns(const FactoredBake& bake, const Material& material, const FilmLegs& legs,
+std::size_t strata_of_returns(const SharedInputs& bake, const Material& material, const FilmLegs& legs,
                               BlockSummary& summary);
 
 // Calls visit(leg, what the film reflects at each of `orders`) for the returns of all replicates.
 template <class Visit>
-void visit_returns(const FactoredBake& bake, const Material& material, const Axis& orders,
+void visit_returns(const SharedInputs& bake, const Material& material, const Axis& orders,
                    BlockSummary& summary, Visit visit) {
   const FilmLegs legs(material);
   FringePowers powers(ThinFilm::below(material), orders, fringe_order(material, 1));
@@ -30,7 +30,7 @@ void visit_returns(const FactoredBake& bake, const Material& material, const Axi
 }
 
 // At (depth, order).
-Block walk_returned(const FactoredBake& bake, std::size_t ior);
+Block walk_returned(const SharedInputs& bake, std::size_t ior);
 
 // Puts the values of such a block into `array`.
 void add_returned(std::size_t ior, const std::string& bytes, NdArray& array);

@@ -103,7 +103,7 @@ Table whole_table(const Table& outline, const DenseCells& cells) {
   return table;
 }
 
-Table bake_table(const Recipe& recipe, Encoding encoding, const SweepSettings& settings) {
+Table bake_table(const Recipe& recipe, Encoding encoding, const BakeSettings& settings) {
   const auto job = make_job(recipe, encoding, settings.seed);
   BlocksInMemory blocks(job->tasks());
   TaskSettings run{settings.threads, {}, {}};
@@ -115,7 +115,7 @@ Table bake_table(const Recipe& recipe, Encoding encoding, const SweepSettings& s
   return cells ? whole_table(table, *cells) : table;
 }
 
-Table bake_table(const Recipe& recipe, const SweepSettings& settings) {
+Table bake_table(const Recipe& recipe, const BakeSettings& settings) {
   return bake_table(recipe, encodings_of(recipe).front(), settings);
 }
 

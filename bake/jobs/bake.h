@@ -26,7 +26,7 @@ std::unique_ptr<BakeJob> make_job(const Recipe& recipe, Encoding encoding, std::
 // A dense table with its values.
 Table whole_table(const Table& outline, const DenseCells& cells);
 
-struct SweepSettings {
+struct BakeSettings {
   std::uint64_t seed = 1;
   int threads = 0;                                   // 0: all
   std::function<void(double fraction)> on_progress;  // now and then, one thread at a time
@@ -34,8 +34,8 @@ struct SweepSettings {
 
 // The same recipe and seed give the same bits for every thread count. info holds everything but the measured
 // error.
-Table bake_table(const Recipe& recipe, Encoding encoding, const SweepSettings& settings);
+Table bake_table(const Recipe& recipe, Encoding encoding, const BakeSettings& settings);
 // In the first of encodings_of().
-Table bake_table(const Recipe& recipe, const SweepSettings& settings);
+Table bake_table(const Recipe& recipe, const BakeSettings& settings);
 
 }  // namespace sunbeam

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "bake/base/running_mean.h"
+#include "bake/base/error_floor.h"
 #include "bake/dense/solved_job.h"
 #include "bake/jobs/bake.h"
 #include "sunbeam/detail/text.h"

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "bake/base/running_mean.h"
+#include "bake/base/error_floor.h"
 #include "sunbeam/bsdf.h"
 
 namespace sunbeam {

@@ -8,8 +8,8 @@
 namespace sunbeam {
 
 // `recipe` must outlive it.
-struct FactoredBake {
-  FactoredBake(const Recipe& recipe, std::uint64_t seed)
+struct SharedInputs {
+  SharedInputs(const Recipe& recipe, std::uint64_t seed)
       : recipe(recipe), seed(seed), outline(factor_axes(recipe)) {
     const auto axes = direction_axes(recipe, "");
     for (const double c : axes[0].nodes)

@@ -45,8 +45,8 @@ double seconds_now() {
 }  // namespace
 
 std::string BakeIdentity::text() const {
-  return fmt::format("version {}\nrecipe_hash {}\nencoding {}\nseed {}\nshard {}\nshards {}\nplan {}\n\n{}",
-                     version, recipe_hash, encoding, seed, shard, shards, plan, recipe);
+  return fmt::format("version {}\nrecipe_hash {}\nencoding {}\nseed {}\nshard {}\nshards {}\n\n{}", version,
+                     recipe_hash, encoding, seed, shard, shards, recipe);
 }
 
 BakeIdentity BakeIdentity::parse(const std::string& text) {
@@ -61,7 +61,6 @@ BakeIdentity BakeIdentity::parse(const std::string& text) {
     if (key == "recipe_hash") identity.recipe_hash = value;
     if (key == "encoding") identity.encoding = value;
     if (key == "seed") identity.seed = std::stoull(value);
-    if (key == "plan") identity.plan = value;
     if (key == "shard") identity.shard = std::stoi(value);
     if (key == "shards") identity.shards = std::stoi(value);
   }
@@ -77,7 +76,6 @@ std::string BakeIdentity::difference(const BakeIdentity& other) const {
   if (recipe_hash != other.recipe_hash) return differs("a recipe of hash", recipe_hash, other.recipe_hash);
   if (seed != other.seed) return differs("seed", seed, other.seed);
   if (encoding != other.encoding) return differs("encoding", encoding, other.encoding);
-  if (recipe != other.recipe) return "another plan of the same recipe";
   return {};
 }
 

@@ -17,12 +17,11 @@ namespace sunbeam {
 // What is baked: blocks of different ones do not mix.
 struct BakeIdentity {
   std::string version;      // of the tool
-  std::string recipe_hash;  // of the recipe as it was asked for
-  std::string recipe;       // as it is baked: planned, with overrides, canonical TOML
+  std::string recipe_hash;  // of `recipe`
+  std::string recipe;       // with overrides, canonical TOML
   std::string encoding;     // factored or dense
   std::uint64_t seed = 1;
   int shard = 0, shards = 1;  // shard counts from 0
-  std::string plan;           // what the plan did, one line
 
   std::string text() const;
   static BakeIdentity parse(const std::string& text);  // throws Error

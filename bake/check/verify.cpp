@@ -221,7 +221,7 @@ namespace {
 
 VerifyReport verify(const Table& table, const DenseCells* cells, const VerifySettings& settings) {
   estimator_for_truth(settings.truth, table.material);  // throws if it has none
-  const Spectrum spectrum = parse_recipe(table.info.at("recipe"), "recipe of the table").spectrum;
+  const Spectrum spectrum = parse_stored_recipe(table.info.at("recipe"), "recipe of the table").spectrum;
   VerifyReport report;
   report.truth = name_of(settings.truth);
   report.points.resize(static_cast<std::size_t>(settings.points));

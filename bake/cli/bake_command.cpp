@@ -4,11 +4,13 @@
 #include <optional>
 
 #include "bake/base/version.h"
+#include "bake/blocks/journal.h"
 #include "bake/cli/commands.h"
 #include "bake/cli/interrupt.h"
 #include "bake/dense/solved_job.h"
 #include "bake/jobs/bake.h"
 #include "bake/jobs/finish_bake.h"
+#include "bake/jobs/preview.h"
 #include "bake/jobs/work_folder.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/file.h"
@@ -37,41 +39,19 @@ class BakeCommand {
   explicit BakeCommand(const BakeOptions& options)
       : options_(options),
         form_(options.progress == "json" ? ProgressForm::json : ProgressForm::text),
-        asked_(load_recipe(options.recipe, options.overrides)) {
-    if (options.preview) asked_ = preview_of(asked_);
-    for (const Encoding encoding : encodings_of(asked_)) require_reasonable_size(asked_, encoding);
+        recipe_(load_recipe(options.recipe, options.overrides)) {
+    if (options.preview) recipe_ = preview_of(recipe_);
+    for (const Encoding encoding : encodings_of(recipe_)) require_reasonable_size(recipe_, encoding);
     require_writable(options.output);
     work_.emplace(options.output, options.resume);
   }
 
-  int run() {
-    make_plan();
-    for (const Encoding encoding : encodings_of(plan_.recipe))
-      require_reasonable_size(plan_.recipe, encoding);
-    return options_.shards > 0 ? bake_part() : bake_table();
-  }
+  int run() { return options_.shards > 0 ? bake_part() : bake_table(); }
 
  private:
-  void make_plan() {
-    plan_ = {asked_, ""};
-    if (asked_.accuracy.interpolation == 0) return;
-    if (auto saved = work_->saved_plan(asked_, options_.seed)) {
-      plan_ = *saved;
-    } else {
-      PlanSettings settings{options_.seed, options_.threads, {}};
-      settings.on_step = [](const std::string& axis, std::size_t nodes, double error) {
-        fmt::print(stderr, "plan: {}, {} nodes: error {:.2g} between them\n", axis, nodes, error);
-      };
-      plan_ = plan_bake(asked_, settings);
-      work_->save(plan_, asked_, options_.seed);
-    }
-    fmt::print(stderr, "plan: {}\n", plan_.summary);
-  }
-
   BakeIdentity identity_of(Encoding encoding) const {
     const int shards = std::max(1, options_.shards), shard = options_.shards > 0 ? options_.shard - 1 : 0;
-    return {kToolVersion, asked_.hash, plan_.recipe.text, name_of(encoding), options_.seed,
-            shard,        shards,      plan_.summary};
+    return {kToolVersion, recipe_.hash, recipe_.text, name_of(encoding), options_.seed, shard, shards};
   }
 
   std::unique_ptr<Journal> journal_of(Encoding encoding) const {
@@ -99,19 +79,19 @@ class BakeCommand {
   }
 
   int bake_table() {
-    const auto encodings = encodings_of(plan_.recipe);
+    const auto encodings = encodings_of(recipe_);
     for (const Encoding encoding : encodings) {
-      announce(plan_.recipe, encoding);
-      const auto job = make_job(plan_.recipe, encoding, options_.seed);
+      announce(recipe_, encoding);
+      const auto job = make_job(recipe_, encoding, options_.seed);
       const auto journal = journal_of(encoding);
       if (!run_blocks(*job, {0, job->tasks()}, *journal)) return kInterrupted;
-      FinishedBake table(plan_.recipe, *job, *journal, plan_.summary);
+      FinishedBake table(recipe_, *job, *journal);
       const bool good =
           table.measure_error(options_.preview ? kPreviewPoints : kCheckPoints, options_.threads, form_);
       if (encodings.size() > 1)
         fmt::print(stderr, "encoding auto: {} {} the tolerances (median {:g}, p99 {:g})\n", name_of(encoding),
-                   good ? "is the smallest that meets" : "misses", plan_.recipe.accuracy.tolerance_median,
-                   plan_.recipe.accuracy.tolerance_p99);
+                   good ? "is the smallest that meets" : "misses", recipe_.accuracy.tolerance_median,
+                   recipe_.accuracy.tolerance_p99);
       if (!good && !options_.preview && encoding != encodings.back()) continue;
       table.save(options_.output);
       break;
@@ -132,9 +112,9 @@ class BakeCommand {
   }
 
   int bake_part() {
-    const Encoding encoding = encodings_of(plan_.recipe).front();
-    announce(plan_.recipe, encoding);
-    const auto job = make_job(plan_.recipe, encoding, options_.seed);
+    const Encoding encoding = encodings_of(recipe_).front();
+    announce(recipe_, encoding);
+    const auto job = make_job(recipe_, encoding, options_.seed);
     const TaskRange range = shard_of(*job, options_.shard - 1, options_.shards);
     if (options_.resume && is_finished(identity_of(encoding), range)) {
       fmt::print(stderr, "{}: is there already\n", options_.output);
@@ -154,8 +134,7 @@ class BakeCommand {
 
   const BakeOptions& options_;
   ProgressForm form_;
-  Recipe asked_;
-  Plan plan_;
+  Recipe recipe_;
   std::optional<WorkFolder> work_;
 };
 

@@ -18,7 +18,7 @@ int run_merge(const MergeOptions& options) {
   const auto job = make_job(recipe, is_factored ? Encoding::factored : Encoding::dense, identity.seed);
   parts.require_whole(*job);
   require_writable(options.output);
-  FinishedBake table(recipe, *job, parts, identity.plan);
+  FinishedBake table(recipe, *job, parts);
   const bool good = table.measure_error(kCheckPoints, options.threads,
                                         options.progress == "json" ? ProgressForm::json : ProgressForm::text);
   table.save(options.output);

@@ -44,7 +44,7 @@ Parameters parameters_of(const PlotOptions& options, const Material& material) {
 }
 
 std::string polar_file(const Table& table, const TableAppearance& skin, double degrees) {
-  const Recipe recipe = parse_recipe(table.info.at("recipe"), "recipe of the table");
+  const Recipe recipe = parse_stored_recipe(table.info.at("recipe"), "recipe of the table");
   const LiveAppearance live(skin.material(), recipe.spectrum, kCurveEstimates);
   const Vec3 wi = spherical_direction(degrees * kPi / 180, 0);
   return svg_document(kPolarWidth, kPolarHeight, fmt::format("BRDF times cosine, theta_i {:g}", degrees),

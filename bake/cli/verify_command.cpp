@@ -86,7 +86,7 @@ Estimator truth_of(const VerifyOptions& options, const Recipe& recipe) {
 
 int run_verify(const VerifyOptions& options) {
   const Table table = load_table(options.table);
-  const Recipe recipe = parse_recipe(table.info.at("recipe"), options.table + ": recipe");
+  const Recipe recipe = parse_stored_recipe(table.info.at("recipe"), options.table + ": recipe");
   if (!options.json.empty()) require_writable(options.json);
   if (!options.html.empty()) check_html(options.html);
   VerifySettings settings;

@@ -99,8 +99,8 @@ std::vector<Axis> film_axes(const Recipe& recipe) {
 void bake_film(const Recipe& recipe, Table& table) {
   const auto axes = film_axes(recipe);
   const Axis &thickness = axes[0], &ior = axes[1], &cosine = axes[2];
-  const bool has_frame = table.frame == FrameKind::closed, passes = has_frame && !recipe.material.is_smooth();
-  if (recipe.spectrum.is_full() && has_frame) table.first_visit = first_visit(recipe);
+  const bool passes = !recipe.material.is_smooth();
+  if (recipe.spectrum.is_full()) table.first_visit = first_visit(recipe);
   table.film_reflectance = NdArray("film_reflectance", axes, Precision::single_float);
   if (passes) table.film_transmittance = NdArray("film_transmittance", axes, Precision::single_float);
 

@@ -60,7 +60,6 @@ DenseNodes::DenseNodes(const Recipe& recipe)
                    static_cast<std::size_t>(recipe.table.azimuths)) {
   outline_.material = recipe.material;
   outline_.symmetry = symmetry_of(recipe);
-  outline_.frame = recipe.table.frame;
   bake_film(recipe, outline_);
   frame_.emplace(recipe.material, outline_.first_visit);
   const auto axes = rest_axes(recipe);
@@ -78,7 +77,7 @@ Parameters DenseNodes::parameters(std::size_t node) const {
 
 std::vector<float> DenseNodes::remainder(std::size_t node, Rows rest) const {
   equal_cells_.average(rest);
-  if (outline_.frame == FrameKind::closed) frame(node, rest);
+  frame(node, rest);
   std::vector<float> result;
   for (const std::vector<Rgb>& row : rest)
     for (const Rgb& value : row)

@@ -34,15 +34,8 @@ double bytes_of(const Recipe& recipe, Encoding encoding) {
     return bytes_of(factors.arrival) + bytes_of(factors.returned) + bytes_of(factors.exchange);
   }
   const double value = recipe.table.precision == Precision::half_float ? 2 : 4;
-  const double films = recipe.material.is_smooth() || recipe.table.frame == FrameKind::none ? 1 : 2;
+  const double films = recipe.material.is_smooth() ? 1 : 2;
   return (3 * value + 4) * cells_of(rest_axes(recipe)) + films * 3 * 4 * cells_of(film_axes(recipe));
-}
-
-double cpu_seconds_of(const Recipe& recipe, Encoding encoding, std::uint64_t seed) {
-  const auto job = make_job(recipe, encoding, seed);
-  double seconds = 0;
-  for (std::size_t task = 0; task < job->tasks(); ++task) seconds += job->cost(task);
-  return seconds;
 }
 
 std::uint64_t total_walks(const BakeJob& job, const Blocks& blocks) {

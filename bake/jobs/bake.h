@@ -17,9 +17,6 @@ void require_reasonable_size(const Recipe& recipe, Encoding encoding);
 // Of the table's arrays, uncompressed.
 double bytes_of(const Recipe& recipe, Encoding encoding);
 
-// Of the whole bake, as its job estimates it.
-double cpu_seconds_of(const Recipe& recipe, Encoding encoding, std::uint64_t seed);
-
 // `recipe` must outlive the job.
 std::unique_ptr<BakeJob> make_job(const Recipe& recipe, Encoding encoding, std::uint64_t seed);
 

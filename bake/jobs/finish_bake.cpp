@@ -12,11 +12,8 @@
 
 namespace sunbeam {
 
-FinishedBake::FinishedBake(const Recipe& recipe, const BakeJob& job, const Blocks& blocks,
-                           const std::string& plan)
-    : recipe_(recipe), table_(job.table(blocks)), cells_(job.cells(blocks)) {
-  if (!plan.empty()) table_.info["plan"] = plan;
-}
+FinishedBake::FinishedBake(const Recipe& recipe, const BakeJob& job, const Blocks& blocks)
+    : recipe_(recipe), table_(job.table(blocks)), cells_(job.cells(blocks)) {}
 
 bool FinishedBake::measure_error(int points, int threads, ProgressForm form) {
   VerifySettings settings;

@@ -12,8 +12,8 @@ inline constexpr int kCheckPoints = 250;  // of the error that a table carries
 
 class FinishedBake {
  public:
-  // `blocks` must have all of the job's, and outlive this, as recipe and job must. `plan` as in Plan.
-  FinishedBake(const Recipe& recipe, const BakeJob& job, const Blocks& blocks, const std::string& plan);
+  // `blocks` must have all of the job's, and outlive this, as recipe and job must.
+  FinishedBake(const Recipe& recipe, const BakeJob& job, const Blocks& blocks);
 
   // Stores the figures of `sunbeam verify TABLE --points POINTS` in the table. True if within the tolerances.
   bool measure_error(int points, int threads, ProgressForm form);

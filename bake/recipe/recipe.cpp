@@ -200,20 +200,7 @@ int read_azimuths(const ConfigTable& config, const Material& material) {
   return azimuths;
 }
 
-}  // namespace
-
-Recipe parse_recipe(const std::string& text, const std::string& name,
-                    const std::vector<std::string>& overrides) {
-  const ConfigTable config = ConfigTable::parse(text, name, overrides);
-  Recipe recipe;
-  recipe.name = name;
-  const ConfigTable material = config.table("material"), grid = config.table("grid");
-  recipe.material = read_material(material);
-  recipe.grid = read_grid(grid, recipe.material);
-  recipe.spectrum = read_spectrum(config.table("spectrum"), material, grid, recipe);
-  read_albedo(material, recipe.spectrum, recipe.material);
-
-  const ConfigTable table = config.table("table");
+void read_table(const ConfigTable& table, Recipe& recipe) {
   recipe.table.angles = table.integer("angles", 2, kMostDirectionNodes, recipe.table.angles);
   recipe.table.azimuths = read_azimuths(table, recipe.material);
   recipe.table.precision = static_cast<Precision>(table.choice("precision", {"half", "float"}, 0));
@@ -223,13 +210,10 @@ Recipe parse_recipe(const std::string& text, const std::string& name,
                fmt::format("found \"factored\", but the material has {}; allowed: \"auto\", \"dense\"",
                            recipe.material.scatters() ? "scattering_per_nm > 0" : "microfacet \"multiple\""));
 
-  recipe.table.frame = static_cast<FrameKind>(table.choice("frame", {"closed", "none"}, 0));
-  if (recipe.table.frame == FrameKind::none && recipe.table.encoding != Encoding::dense)
-    table.fail("frame", "found \"none\"; allowed with encoding \"dense\" only");
-
   recipe.table.values = static_cast<TableValues>(table.choice("values", {"auto", "walks"}, 0));
+}
 
-  const ConfigTable accuracy = config.table("accuracy");
+void read_accuracy(const ConfigTable& accuracy, Recipe& recipe) {
   recipe.accuracy.tolerance_median =
       accuracy.number("tolerance_median", {1e-6, 10}, recipe.accuracy.tolerance_median);
   recipe.accuracy.tolerance_p99 = accuracy.number("tolerance_p99", {1e-6, 10}, recipe.accuracy.tolerance_p99);
@@ -237,17 +221,61 @@ Recipe parse_recipe(const std::string& text, const std::string& name,
       accuracy.number("noise", {1e-6, 1}, default_noise(recipe.accuracy.tolerance_median));
   if (accuracy.choice("estimator", {"unidirectional", "bidirectional"}, 0) == 1)
     recipe.accuracy.estimator = Estimator::bidirectional;
+}
 
-  recipe.accuracy.interpolation = accuracy.number("interpolation", {0, 1}, 0);
+struct RemovedKey {
+  const char *section, *key;  // no section: at the top
+  const char* reason;
+};
+constexpr RemovedKey kRemovedKeys[] = {
+    {"table", "frame",
+     "dense tables always hold what is left of their closed form, which takes fewer nodes; leave the key "
+     "out"},
+    {"accuracy", "interpolation",
+     "a bake no longer chooses its nodes; list them in [grid], table.angles and table.azimuths, and ask "
+     "sunbeam verify whether they are enough"},
+    {"", "limits", "it bounded the nodes that accuracy.interpolation chose; leave the section out"},
+};
 
-  const ConfigTable limits = config.table("limits");
-  recipe.limits.megabytes = limits.number("megabytes", {0.001, 1e6}, recipe.limits.megabytes);
-  recipe.limits.cpu_minutes = limits.number("cpu_minutes", {0.001, 1e6}, recipe.limits.cpu_minutes);
+enum class RemovedKeys { refused, passed_over };
+
+void check_removed(const ConfigTable& section, const char* name, RemovedKeys removed) {
+  for (const RemovedKey& gone : kRemovedKeys)
+    if (gone.section == std::string_view(name) && section.has_removed(gone.key) &&
+        removed == RemovedKeys::refused)
+      section.fail(gone.key, fmt::format("removed in 0.2.0; {}", gone.reason));
+}
+
+Recipe read_recipe(const ConfigTable& config, const std::string& name, RemovedKeys removed) {
+  const ConfigTable table = config.table("table"), accuracy = config.table("accuracy");
+  check_removed(config, "", removed);
+  check_removed(table, "table", removed);
+  check_removed(accuracy, "accuracy", removed);
+  Recipe recipe;
+  recipe.name = name;
+  const ConfigTable material = config.table("material"), grid = config.table("grid");
+  recipe.material = read_material(material);
+  recipe.grid = read_grid(grid, recipe.material);
+  recipe.spectrum = read_spectrum(config.table("spectrum"), material, grid, recipe);
+  read_albedo(material, recipe.spectrum, recipe.material);
+  read_table(table, recipe);
+  read_accuracy(accuracy, recipe);
 
   config.finish();
   recipe.text = config.canonical_text();
   recipe.hash = content_hash(recipe.text);
   return recipe;
+}
+
+}  // namespace
+
+Recipe parse_recipe(const std::string& text, const std::string& name,
+                    const std::vector<std::string>& overrides) {
+  return read_recipe(ConfigTable::parse(text, name, overrides), name, RemovedKeys::refused);
+}
+
+Recipe parse_stored_recipe(const std::string& text, const std::string& name) {
+  return read_recipe(ConfigTable::parse(text, name), name, RemovedKeys::passed_over);
 }
 
 Recipe load_recipe(const std::string& path, const std::vector<std::string>& overrides) {

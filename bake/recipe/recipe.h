@@ -41,7 +41,6 @@ struct Recipe {
     int azimuths = 1;
     Precision precision = Precision::half_float;
     Encoding encoding = Encoding::automatic;
-    FrameKind frame = FrameKind::closed;  // dense only
     TableValues values = TableValues::automatic;
   } table;
 
@@ -52,14 +51,7 @@ struct Recipe {
     double tolerance_median = 0.01;  // of verify's error
     double tolerance_p99 = 0.05;
     Estimator estimator = Estimator::pfmc;  // or bidirectional
-    // Error allowed between nodes, which the plan (plan.h) refines until it holds; 0: nodes as they are.
-    double interpolation = 0;
   } accuracy;
-
-  struct {
-    double megabytes = 64;    // of a table's arrays, uncompressed
-    double cpu_minutes = 30;  // of the bake, as BakeJob::cost estimates it
-  } limits;                   // of the plan
 
   Spectrum spectrum;  // [spectrum], with albedo and absorption_spectrum of [material]
 
@@ -72,5 +64,7 @@ struct Recipe {
 Recipe load_recipe(const std::string& path, const std::vector<std::string>& overrides = {});
 Recipe parse_recipe(const std::string& text, const std::string& name,
                     const std::vector<std::string>& overrides = {});
+// The recipe that a table was baked from. Keys that recipes had once and have no more are passed over.
+Recipe parse_stored_recipe(const std::string& text, const std::string& name);
 
 }  // namespace sunbeam

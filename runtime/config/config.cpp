@@ -159,6 +159,7 @@ void ConfigTable::fail(std::string_view key, const std::string& message) const {
 }
 
 bool ConfigTable::has(std::string_view key) const { return node_->ask(key) != nullptr; }
+bool ConfigTable::has_removed(std::string_view key) const { return node_->values->contains(key) && has(key); }
 bool ConfigTable::is_number(std::string_view key) const { return has(key) && node_->ask(key)->is_number(); }
 bool ConfigTable::is_list(std::string_view key) const { return has(key) && node_->ask(key)->is_array(); }
 bool ConfigTable::is_table(std::string_view key) const { return has(key) && node_->ask(key)->is_table(); }

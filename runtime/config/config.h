@@ -31,6 +31,8 @@ class ConfigTable {
                            const std::vector<std::string>& overrides = {});
 
   bool has(std::string_view key) const;
+  // As has(), but the key counts as asked for only if it is there.
+  bool has_removed(std::string_view key) const;
   bool is_number(std::string_view key) const;
   bool is_list(std::string_view key) const;
   bool is_table(std::string_view key) const;

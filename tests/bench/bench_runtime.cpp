@@ -64,7 +64,7 @@ const Bsdf& table_bsdf() {
 
 // At the wavelengths of the table's own recipe.
 Wavelengths wavelengths() {
-  return parse_recipe(table().info.at("recipe"), "recipe").spectrum.wavelengths(table().material);
+  return parse_stored_recipe(table().info.at("recipe"), "recipe").spectrum.wavelengths(table().material);
 }
 
 const Bsdf& live_bsdf() {

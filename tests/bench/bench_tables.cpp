@@ -87,7 +87,6 @@ struct Tables {
 const std::vector<std::pair<std::string, Overrides>> kBaked = {
     {"factored", {"table.encoding=\"factored\""}},
     {"dense", {"table.encoding=\"dense\"", "accuracy.noise=0.002"}},
-    {"dense, no closed forms", {"table.encoding=\"dense\"", "table.frame=\"none\"", "accuracy.noise=0.002"}},
 };
 
 constexpr HalfGrid::Nodes kUniform[] = {

@@ -57,13 +57,19 @@ class RecipeErrors(support.CliTest):
         self.check("table", "azimuths", "0", "found 0;", "1 to 512")
         self.check("table", "precision", '"double"', 'found "double"', '"half", "float"')
         self.check("table", "encoding", '"sparse"', 'found "sparse"', '"dense"')
-        self.check("table", "frame", '"open"', 'found "open"', '"closed"')
-        self.check("table", "frame", '"none"', 'found "none"', '"dense"')
         self.check("accuracy", "noise", "0", "found 0;", "1e-06 to 1")
         self.check("accuracy", "noise", "nan", "found nan")
         self.check("accuracy", "tolerance_median", "0.0", "found 0;")
         self.check("accuracy", "tolerance_p99", "-0.1", "found -0.1")
         self.check("spectrum", "mode", '"hero"', 'found "hero"', '"rgb3"')
+
+    def test_removed_keys(self):
+        """What a recipe could once say is refused with what to do instead."""
+        self.check("table", "frame", '"none"', "removed in 0.2.0", "closed form", "leave the key out")
+        self.check("table", "frame", '"closed"', "removed in 0.2.0")
+        self.check("accuracy", "interpolation", "0.01", "removed in 0.2.0", "[grid]", "sunbeam verify")
+        name = self.write("limits.toml", recipe_with("limits", "megabytes = 1"))
+        self.refuse("bake", name, "-o", "out.exr", naming=["key 'limits': removed in 0.2.0", "leave the section out"])
 
     def test_wrong_types(self):
         self.check("material", "base_ior", '"1.5"', "found a string", "number")

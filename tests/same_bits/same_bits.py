@@ -31,7 +31,7 @@ RECIPES = {
     "factored rough": ("table.encoding=factored", "spectrum.mode=full", "material.absorption_spectrum=eumelanin"),
     "factored rough product": ("table.encoding=factored", "material.absorption_path=product"),
     "factored anisotropic": ("table.encoding=factored", "table.azimuths=4", ROUGHNESSES, "table.precision=float"),
-    "dense walked": ("table.encoding=dense", "table.frame=none", "accuracy.interpolation=0.05"),
+    "dense walked": ("table.encoding=dense",),
     "dense anisotropic": ("table.encoding=dense", "table.azimuths=4", ROUGHNESSES, "material.absorption_path=product"),
     "dense walked slab": (*SLAB, "table.values=walks", "accuracy.estimator=bidirectional"),
     "dense solved slab": (*SLAB, "spectrum.mode=full"),

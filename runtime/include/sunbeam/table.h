@@ -26,7 +26,8 @@
 //   <= 0; or 1 as above,
 // with F = `first_visit`, T in front is raised to 30 % of its mean over channels, and values may be negative.
 //
-// With FrameKind::none there is no closed form in the rest at all: it is what the array `remainder` holds.
+// With FrameKind::none, which files of version 0.1 may have, there is no closed form in the rest at all: it
+// is what the array `remainder` holds.
 #pragma once
 
 #include <array>

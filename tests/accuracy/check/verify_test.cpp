@@ -231,6 +231,25 @@ TEST(Verify, FigureNames) {
                                      "dirac_error_p99", "energy_max", "reciprocity_max", "points"));
 }
 
+// A table file keeps the text of its recipe; what a recipe may no longer say does not make it unreadable.
+TEST(Verify, PassesOverKeysThatRecipesHadOnce) {
+  Table table = test::baked(test::SmallRecipe());
+  VerifySettings settings;
+  settings.points = 3;
+  const VerifyReport before = verify(table, settings);
+  std::string& recipe = table.info.at("recipe");
+  const std::string accuracy = "[accuracy]\n";
+  recipe.insert(recipe.find(accuracy) + accuracy.size(), "interpolation = 0.01\n");
+  const std::string section = "[table]\n";
+  recipe.insert(recipe.find(section) + section.size(), "frame = \"closed\"\n");
+  recipe += "\n\n[limits]\nmegabytes = 64\n";
+  const Table read = parse_table_exr(table_exr_bytes(table), "old.exr");
+  EXPECT_EQ(read.info.at("recipe"), recipe);
+  EXPECT_EQ(verify(read, settings).error.max, before.error.max);
+  EXPECT_THROW(parse_recipe(recipe, "new.toml"), Error);
+  EXPECT_EQ(parse_stored_recipe(recipe, "old.exr").text, recipe);
+}
+
 // The shipped small table states its own error: measured again, by the same code and seed, it is the same;
 // but for a rare direction drawn otherwise where instruction sets round the film's reflectance differently.
 TEST(Golden, PreviewStatesItsError) {
@@ -238,7 +257,7 @@ TEST(Golden, PreviewStatesItsError) {
   ASSERT_TRUE(std::filesystem::exists(path))
       << path << " is missing: bake it from tables/recipes/preview.toml";
   const Table table = load_table_exr(path);
-  const Recipe recipe = parse_recipe(table.info.at("recipe"), path);
+  const Recipe recipe = parse_stored_recipe(table.info.at("recipe"), path);
   VerifySettings s;
   s.points = 250;
   s.truth = default_truth(recipe);

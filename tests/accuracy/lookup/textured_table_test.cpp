@@ -44,12 +44,22 @@ void replace(std::string& text, const std::string& what, const std::string& by) 
   text.replace(text.find(what), what.size(), by);
 }
 
+// Bakes make no such tables any more, but files of earlier ones hold them. Any values do.
+constexpr const char* kWithoutFrame = "dense_without_frame";
+void remove_frame(Table& table) {
+  table.frame = FrameKind::none;
+  table.film_transmittance = NdArray();
+  table.first_visit = NdArray();
+}
+
 Table baked(const Case& one) {
   std::string text = one.recipe.text();
   replace(text, "encoding = \"dense\"\n", "encoding = \"" + one.encoding + "\"\n" + one.table);
   if (!one.roughness.empty())
     replace(text, "roughness = " + to_text(one.recipe.roughness), "roughness = " + one.roughness);
-  return bake_table(parse_recipe(text, "small.toml"), {.seed = 1, .threads = 0, .on_progress = {}});
+  Table table = bake_table(parse_recipe(text, "small.toml"), {.seed = 1, .threads = 0, .on_progress = {}});
+  if (one.name == kWithoutFrame) remove_frame(table);
+  return table;
 }
 
 const Table& table_of(const Case& one) {
@@ -342,7 +352,7 @@ std::vector<Case> dense_cases() {
           exact("dense_product", dense_of(0.1, kPigment, full, "product")),
           exact("dense_white", with_albedo(dense_of(0.2, "", ""), 1)),
           exact("dense_anisotropic", dense_of(0.1, "", ""), "[0.1, 0.3]", "azimuths = 4\n"),
-          exact("dense_without_frame", dense_of(0.1, "", full), "", "frame = \"none\"\n"),
+          exact(kWithoutFrame, dense_of(0.1, "", full)),
           exact("slab", dense_of(0.2, slab, full)),
           exact("slab_smooth", dense_of(0, slab, "")),
           exact("multiple_facets", facets, "", "azimuths = 2\n")};

@@ -56,7 +56,7 @@ inline std::unique_ptr<const Bsdf> skin_bsdf(const SceneMaterial& scene_material
   const ColorMatrix to_rec709 = rgb_to_rgb(skins.table.color_space(), ColorSpace::rec709);
   std::unique_ptr<const Bsdf> bsdf;
   if (skins.live) {
-    const Spectrum spectrum = parse_recipe(skins.table.info.at("recipe"), "recipe").spectrum;
+    const Spectrum spectrum = parse_stored_recipe(skins.table.info.at("recipe"), "recipe").spectrum;
     bsdf = std::make_unique<ColorConvertedBsdf<LiveBsdf>>(LiveBsdf(material, spectrum.wavelengths(material)),
                                                           to_rec709);
   } else {

@@ -9,6 +9,7 @@
 #include "bake/live/exact/exact.h"
 #include "bake/live/pfmc.h"
 #include "sunbeam/table_bsdf.h"
+#include "sunbeam/textured_table.h"
 
 namespace sunbeam {
 namespace {
@@ -69,18 +70,22 @@ WalkedRest walk_rest(const Pfmc& model, Technique technique, const Vec3& wi, con
 
 class PointCheck {
  public:
-  PointCheck(const Table& table, const DenseCells* cells, const Spectrum& spectrum,
-             const VerifySettings& settings, std::uint64_t index)
-      : settings_(settings), rng_(settings.seed, index) {
+  // `textured` is that of `table`, unless the table's values are in `cells`.
+  PointCheck(const Table& table, const DenseCells* cells, const std::optional<TexturedTable>& textured,
+             const Spectrum& spectrum, const VerifySettings& settings, std::uint64_t index)
+      : settings_(settings), rng_(settings.seed, index), textured_(textured) {
     point_.parameters = {draw(table.parameter_axis(0), rng_), draw(table.parameter_axis(1), rng_),
                          draw(table.parameter_axis(2), rng_)};
     point_.cos_i = lerp(rng_.uniform(), std::cos(89 * kPi / 180), 1);
     if (table.symmetry == Symmetry::anisotropic) point_.phi_i = 2 * kPi * rng_.uniform();
     wi_ = direction_from_cosine(point_.cos_i, point_.phi_i);
-    if (cells)
-      bind(table_around(table, *cells, point_.parameters));
-    else
+    if (cells) {
+      const Table around = table_around(table, *cells, point_.parameters);
+      textured_.emplace(around, Arithmetic::reproducible);
+      bind(around);
+    } else {
       bind(table);
+    }
     wavelengths_ = spectrum.wavelengths(bsdf_->material());
     model_.emplace(bsdf_->material(), wavelengths_);
   }
@@ -161,17 +166,20 @@ class PointCheck {
   }
 
   void measure_errors(const std::vector<Rgb>& live) {
-    double all = 0, rest = 0, rest_total = 0;
+    const TexturedTable::At textured = textured_->at(point_.parameters);
+    double bound_sum = 0, textured_sum = 0, rest = 0, rest_total = 0;
     for (std::size_t k = 0; k < live.size(); ++k) {
       const Vec3& wo = directions_.wo[k];
-      const Rgb rest_difference = bsdf_->rest(wo, wi_) - live[k];
-      const Rgb first_difference = bsdf_->first(wo, wi_) - model_->first(wo, wi_);
-      all += directions_.weight[k] * mean_abs(first_difference + rest_difference);
-      rest += directions_.weight[k] * mean_abs(rest_difference);
-      rest_total += directions_.weight[k] * mean_abs(live[k]);
+      const double weight = directions_.weight[k];
+      const Rgb f = model_->first(wo, wi_) + live[k];
+      bound_sum += weight * mean_abs(bsdf_->eval_pdf(wo, wi_).f - f);
+      textured_sum += weight * mean_abs(textured.eval_pdf(wo, wi_).f - f);
+      rest += weight * mean_abs(bsdf_->rest(wo, wi_) - live[k]);
+      rest_total += weight * mean_abs(live[k]);
       check_reciprocity(wo);
     }
-    point_.error = all / denominator(live);
+    point_.error = bound_sum / denominator(live);
+    point_.textured_error = textured_sum / denominator(live);
     point_.rest_error = rest / std::max(rest_total, kDarkestAlbedo);
   }
 
@@ -188,6 +196,7 @@ class PointCheck {
   VerifyPoint point_;
   Vec3 wi_;
   std::optional<TableBsdf> bsdf_;
+  std::optional<TexturedTable> textured_;
   Wavelengths wavelengths_;
   std::optional<Pfmc> model_;
   Directions directions_;
@@ -225,10 +234,13 @@ VerifyReport verify(const Table& table, const DenseCells* cells, const VerifySet
   VerifyReport report;
   report.truth = name_of(settings.truth);
   report.points.resize(static_cast<std::size_t>(settings.points));
+  std::optional<TexturedTable> textured;
+  if (!cells) textured.emplace(table, Arithmetic::reproducible);
   run_parallel_tasks(report.points.size(), settings.threads, settings.on_progress, [&](std::size_t k) {
-    report.points[k] = PointCheck(table, cells, spectrum, settings, k).run();
+    report.points[k] = PointCheck(table, cells, textured, spectrum, settings, k).run();
   });
   report.error = quantiles(report.points, &VerifyPoint::error);
+  report.textured_error = quantiles(report.points, &VerifyPoint::textured_error);
   report.rest_error = quantiles(report.points, &VerifyPoint::rest_error);
   report.noise_floor = quantiles(report.points, &VerifyPoint::noise_floor);
   report.dirac_error_p99 = quantiles(report.points, &VerifyPoint::dirac_error).p99;
@@ -256,6 +268,10 @@ std::vector<std::pair<std::string, double>> figures(const VerifyReport& report) 
           {"error_p95", report.error.p95},
           {"error_p99", report.error.p99},
           {"error_max", report.error.max},
+          {"error_textured_median", report.textured_error.median},
+          {"error_textured_p95", report.textured_error.p95},
+          {"error_textured_p99", report.textured_error.p99},
+          {"error_textured_max", report.textured_error.max},
           {"rest_error_median", report.rest_error.median},
           {"rest_error_p99", report.rest_error.p99},
           {"noise_floor", report.noise_floor.median},

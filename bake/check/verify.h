@@ -3,10 +3,11 @@
 // Point k draws its own parameters (uniform over each axis' physical range) and wi (uniform in cosine, theta
 // <= 89 degrees; for an anisotropic table also in azimuth) from random stream k. Its error is
 //     Int |f_table - f_live| cos_o dwo / max(Int |f_live| cos_o dwo, 0.002),   f = first (non-Dirac) + rest,
-// mean over channels of the folded colour, by importance sampling with the table's own density. The live
-// values are noisy, which biases an L1 error upwards; noise_floor is the same figure with the table replaced
-// by a second, independent live run of equal cost. Each point spends as many walks as a pilot says a floor of
-// a third of the median tolerance takes.
+// mean over channels of the folded colour, by importance sampling with the table's own density. f_table is
+// what renderers call: `eval` of the table bound to the parameters, and beside it `eval` of the textured
+// table. The live values are noisy, which biases an L1 error upwards; noise_floor is the same figure with the
+// table replaced by a second, independent live run of equal cost. Each point spends as many walks as a pilot
+// says a floor of a third of the median tolerance takes.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +35,9 @@ struct VerifySettings {
 struct VerifyPoint {
   Parameters parameters;
   double cos_i = 0, phi_i = 0;  // of wi
-  double error = 0, rest_error = 0;
+  double error = 0;             // of TableBsdf, bound to the parameters
+  double textured_error = 0;    // of TexturedTable at the parameters
+  double rest_error = 0;        // of TableBsdf::rest alone
   double noise_floor = 0;
   double dirac_error = 0;  // |R_table - R|, largest channel
   double albedo = 0;       // of the table, Dirac included, largest channel
@@ -50,7 +53,7 @@ struct Quantiles {
 
 struct VerifyReport {
   std::vector<VerifyPoint> points;
-  Quantiles error, rest_error, noise_floor;
+  Quantiles error, textured_error, rest_error, noise_floor;
   double dirac_error_p99 = 0, energy_max = 0, reciprocity_max = 0;
   std::string truth;  // the estimator the table was held against
 };

@@ -99,8 +99,8 @@ int run_verify(const VerifyOptions& options) {
   settings.on_progress = Progress("verify", "points", options.points);
   const VerifyReport report = verify(table, settings);
 
-  fmt::print("truth               {}\n", report.truth);
-  for (const auto& [name, value] : figures(report)) fmt::print("{:<20}{:.6g}\n", name, value);
+  fmt::print("truth                   {}\n", report.truth);
+  for (const auto& [name, value] : figures(report)) fmt::print("{:<24}{:.6g}\n", name, value);
   print_worst(report);
   if (!options.json.empty()) write_file_atomically(options.json, report_json(report));
   if (!options.html.empty()) write_html(options, table, recipe, settings, report);

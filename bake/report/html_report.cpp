@@ -94,6 +94,10 @@ std::string cards(const ReportSource& source) {
          card("error_p99", "99th percentile", report.error.p99, percent(report.error.p99),
               allowed(settings.tolerance_p99)) +
          card("error_max", "largest", report.error.max, percent(report.error.max), "") +
+         card("error_textured_median", "median, textured", report.textured_error.median,
+              percent(report.textured_error.median), "parameters from textures") +
+         card("error_textured_p99", "99th percentile, textured", report.textured_error.p99,
+              percent(report.textured_error.p99), "parameters from textures") +
          card("noise_floor", "noise floor, median", report.noise_floor.median,
               percent(report.noise_floor.median), "of the comparison") +
          card("points", "random points", static_cast<double>(report.points.size()),

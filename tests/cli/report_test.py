@@ -12,8 +12,8 @@ import support
 
 VOID = {"meta", "img", "link", "br", "hr", "input"}
 SECTIONS = ("summary", "spheres", "error", "worst", "slices", "energy", "provenance")
-FIGURES = ("error_median", "error_p95", "error_p99", "error_max", "noise_floor", "energy_max", "reciprocity_max",
-           "dirac_error_p99", "rest_error_median", "points")
+FIGURES = ("error_median", "error_p95", "error_p99", "error_max", "error_textured_median", "error_textured_p99",
+           "noise_floor", "energy_max", "reciprocity_max", "dirac_error_p99", "rest_error_median", "points")
 PNG = b"\x89PNG\r\n\x1a\n"
 
 

@@ -6,7 +6,8 @@ import unittest
 
 import support
 
-REQUIRED_KEYS = {"error_median", "error_p95", "error_p99", "error_max", "noise_floor", "dirac_error_p99", "energy_max",
+REQUIRED_KEYS = {"error_median", "error_p95", "error_p99", "error_max", "error_textured_median", "error_textured_p95",
+                 "error_textured_p99", "error_textured_max", "noise_floor", "dirac_error_p99", "energy_max",
                  "reciprocity_max", "points"}
 POINTS = ("--points", "100")
 DENSE = ("--set", "table.encoding=dense")

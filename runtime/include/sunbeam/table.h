@@ -40,6 +40,7 @@
 #include "sunbeam/detail/angles.h"
 #include "sunbeam/detail/factors.h"
 #include "sunbeam/detail/nd_array.h"
+#include "sunbeam/detail/processor.h"
 #include "sunbeam/material.h"
 #include "sunbeam/parameters.h"
 
@@ -56,10 +57,6 @@ class TableBsdf;
 
 // What becomes of parameters beyond those of the table.
 enum class OutsideGrid { clamp, refuse };
-
-// How binding folds the film over wavelengths: with the fastest instructions of this processor, or with bits
-// that are the same on every one, for errors that a table states. They differ by 1e-6 (film_spectrum.h).
-enum class Arithmetic { fastest, reproducible };
 
 struct Table {
   Material material;  // fixed values, and defaults for the parameters

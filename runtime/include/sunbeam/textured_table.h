@@ -60,7 +60,7 @@ struct TexturedViewer;
 class TexturedTable {
  public:
   // Takes what it needs of `table`, which need not outlive it.
-  explicit TexturedTable(const Table& table);
+  explicit TexturedTable(const Table& table, Arithmetic arithmetic = Arithmetic::fastest);
 
   // The BSDF at one parameter point; lives no longer than its table.
   class At final : public Bsdf {

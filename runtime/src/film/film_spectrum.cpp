@@ -95,13 +95,11 @@ std::span<const FilmKernels* const> supported_film_kernels() {
 #endif
 }
 
-const FilmKernels& best_film_kernels() {
+const FilmKernels& film_kernels(Arithmetic arithmetic) {
   static const FilmKernels& best =
-      baseline_is_forced() ? baseline_film_kernels() : *supported_film_kernels().back();
-  return best;
+      baseline_is_forced() ? kBaselineFilmKernels : *supported_film_kernels().back();
+  return arithmetic == Arithmetic::fastest ? best : kBaselineFilmKernels;
 }
-
-const FilmKernels& baseline_film_kernels() { return kBaselineFilmKernels; }
 
 FilmSpectrum::FilmSpectrum(const Wavelengths& wavelengths, double exterior_ior, double film_ior,
                            const FilmKernels& kernels)

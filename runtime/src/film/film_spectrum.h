@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <span>
 
+#include "sunbeam/detail/processor.h"
 #include "sunbeam/detail/wavelengths.h"
 
 namespace sunbeam::inline v1 {
@@ -42,18 +43,16 @@ struct FilmWavelengths {
 
 struct FilmKernels;  // compiled for one instruction set, see film_kernels.h
 
-// The fastest that this machine runs, or the baseline if SUNBEAM_KERNELS asks for it (core/processor.h);
-// decided once per process.
-const FilmKernels& best_film_kernels();
-// What every machine runs, with the same bits on each.
-const FilmKernels& baseline_film_kernels();
+// Returns the fastest kernels that this machine runs, or those of the baseline if reproducible bits or
+// SUNBEAM_KERNELS ask for them.
+const FilmKernels& film_kernels(Arithmetic arithmetic);
 
 // A film of index n1 under an exterior of index n0. Constant after construction: threads may share it.
 class FilmSpectrum {
  public:
   // 1 to kMostWavelengths of them, else Error; indices >= 1.
   FilmSpectrum(const Wavelengths& wavelengths, double exterior_ior, double film_ior,
-               const FilmKernels& kernels = best_film_kernels());
+               const FilmKernels& kernels = film_kernels(Arithmetic::fastest));
 
   // rgb[i] = sum_k weight_k R_k(cosines[i]) over a base of index n2; cosines in the exterior, 0 to 1. `rgb`
   // holds at least as many. Several at once cost less each than one.

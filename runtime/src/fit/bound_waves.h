@@ -13,7 +13,7 @@ class BoundWaves {
  public:
   // `material` is that of the table with the parameters of the point, which lie in the grid. The table must
   // outlive this.
-  BoundWaves(const Table& table, const Material& material, const FilmKernels& kernels = best_film_kernels());
+  BoundWaves(const Table& table, const Material& material, const FilmKernels& kernels);
 
   // What the rest needs to know of one direction.
   struct Direction {

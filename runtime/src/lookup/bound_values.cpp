@@ -40,8 +40,7 @@ BoundValues::BoundValues(const Table& table, const Material& material_at, Arithm
     film = interpolated_film(table.film_reflectance, material);
     return;
   }
-  const BoundWaves waves(table, material,
-                         arithmetic == Arithmetic::fastest ? best_film_kernels() : baseline_film_kernels());
+  const BoundWaves waves(table, material, film_kernels(arithmetic));
   film = folded_film(waves.film(), material);
   if (symmetry == Symmetry::isotropic)
     separable = fit_isotropic(waves);

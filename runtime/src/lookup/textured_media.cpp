@@ -19,8 +19,9 @@ Color4 mean_absorption(const Wavelengths& w) {
 
 }  // namespace
 
-TexturedMedia::TexturedMedia(const Table& table)
-    : film(table.factors.wavelengths, table.material.exterior_ior, table.material.film_ior),
+TexturedMedia::TexturedMedia(const Table& table, Arithmetic arithmetic)
+    : film(table.factors.wavelengths, table.material.exterior_ior, table.material.film_ior,
+           film_kernels(arithmetic)),
       total(FilmWavelengths(table.factors.wavelengths).total_weight),
       absorption(mean_absorption(table.factors.wavelengths)) {}
 

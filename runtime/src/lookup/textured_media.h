@@ -9,7 +9,7 @@
 namespace sunbeam::inline v1 {
 
 struct TexturedMedia {
-  explicit TexturedMedia(const Table& table);
+  TexturedMedia(const Table& table, Arithmetic arithmetic);
 
   // The film's transmittance folded, from its reflectance; kept above 0.
   Color4 passing(const FloatRgb& reflectance) const {

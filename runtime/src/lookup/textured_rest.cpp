@@ -3,8 +3,8 @@
 #include "runtime/src/fit/textured_fit.h"
 
 namespace sunbeam::inline v1 {
-TexturedRest::TexturedRest(const Table& table)
-    : grid_(table), media_(table), stride_(static_cast<int>(grid_.path_stride())) {
+TexturedRest::TexturedRest(const Table& table, Arithmetic arithmetic)
+    : grid_(table), media_(table, arithmetic), stride_(static_cast<int>(grid_.path_stride())) {
   for (int k = 0; k < 4; ++k) corner_[k] = static_cast<int>(grid_.row(k >> 1, k & 1));
   TexturedFit fit = fit_textured(table, grid_, media_);
   nodes_ = std::move(fit.nodes);

@@ -13,7 +13,7 @@ namespace sunbeam::inline v1 {
 
 class TexturedRest {
  public:
-  explicit TexturedRest(const Table& table);
+  TexturedRest(const Table& table, Arithmetic arithmetic);
 
   // Isotropic and of path "sum": L says all, whatever the azimuth.
   bool is_plain() const { return grid_.phis == 1 && pairs_.empty(); }

@@ -42,13 +42,13 @@ struct TexturedEnd {
 };
 
 struct TexturedData {
-  explicit TexturedData(const Table& table)
+  TexturedData(const Table& table, Arithmetic arithmetic)
       : material(table.material),
         frame(table.material),
         facets(table.material.roughness),
         smooth(table.material.is_smooth()) {
     if (table.is_factored()) {
-      rest.emplace(table);
+      rest.emplace(table, arithmetic);
     } else {
       dense.emplace(table);
       albedos.emplace(table);
@@ -135,7 +135,8 @@ struct TexturedDenseViewer {
   float rest_albedo, first_albedo, first_chance;
 };
 
-TexturedTable::TexturedTable(const Table& table) : data_(std::make_shared<TexturedData>(table)) {}
+TexturedTable::TexturedTable(const Table& table, Arithmetic arithmetic)
+    : data_(std::make_shared<TexturedData>(table, arithmetic)) {}
 
 std::size_t TexturedTable::bytes() const {
   return data_->rest ? data_->rest->bytes() : data_->dense->bytes() + data_->albedos->bytes();

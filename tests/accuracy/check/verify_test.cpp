@@ -99,7 +99,7 @@ TEST(Verify, ScaledRemainder) {
   ASSERT_GT(expected, 0.06);
   const auto s = settings(40, 0.03);
   const VerifyReport good = verify(clear_table(), s), report = verify(damaged, s);
-  for (const Quantiles& found : {report.error, report.rest_error}) {
+  for (const Quantiles& found : {report.error, report.textured_error, report.rest_error}) {
     EXPECT_NEAR(found.median, expected, 0.01);
     EXPECT_NEAR(found.max, expected, good.error.max + 0.02);
   }
@@ -107,6 +107,19 @@ TEST(Verify, ScaledRemainder) {
   EXPECT_TRUE(within_tolerance(good, s));
   EXPECT_FALSE(within_tolerance(report, s));
   EXPECT_LT(report.dirac_error_p99, 5e-3);
+}
+
+// Both look-ups of a dense table interpolate the same arrays; those of a factored one are fits of their own,
+// and the textured one is the coarser.
+TEST(Verify, TexturedLookUpHasItsOwnError) {
+  const VerifyReport dense = verify(clear_table(), settings(20, 0.06));
+  EXPECT_NEAR(dense.textured_error.median, dense.error.median, 1e-4);
+  const Table factored = load_table_exr(std::string(SUNBEAM_SOURCE_DIR) + "/tables/golden/preview.exr");
+  VerifySettings by_exact = settings(20, 0.06);
+  by_exact.truth = Estimator::exact;
+  const VerifyReport report = verify(factored, by_exact);
+  EXPECT_GT(report.textured_error.median, 1.2 * report.error.median);
+  EXPECT_LT(report.textured_error.p99, 0.01);
 }
 
 // One channel alone is a third of the error.
@@ -225,10 +238,11 @@ TEST(Verify, FigureNames) {
     names.push_back(name);
     EXPECT_TRUE(std::isfinite(value)) << name;
   }
-  EXPECT_THAT(names,
-              ::testing::ElementsAre("error_median", "error_p95", "error_p99", "error_max",
-                                     "rest_error_median", "rest_error_p99", "noise_floor", "noise_floor_p99",
-                                     "dirac_error_p99", "energy_max", "reciprocity_max", "points"));
+  EXPECT_THAT(names, ::testing::ElementsAre("error_median", "error_p95", "error_p99", "error_max",
+                                            "error_textured_median", "error_textured_p95",
+                                            "error_textured_p99", "error_textured_max", "rest_error_median",
+                                            "rest_error_p99", "noise_floor", "noise_floor_p99",
+                                            "dirac_error_p99", "energy_max", "reciprocity_max", "points"));
 }
 
 // A table file keeps the text of its recipe; what a recipe may no longer say does not make it unreadable.

@@ -49,11 +49,10 @@
 
 namespace sunbeam::inline v1 {
 
-struct FloatRgb;
 struct TexturedData;
-struct TexturedDenseViewer;
-struct TexturedGeneralViewer;
-struct TexturedViewer;
+enum class TexturedKind;
+template <TexturedKind kKind>
+class TexturedLookup;
 
 // Copies share the data. Const calls, those of At included, allocate nothing and lock nothing, and may run on
 // any number of threads.
@@ -84,22 +83,19 @@ class TexturedTable {
 
    private:
     friend class TexturedTable;
+    template <TexturedKind kKind>
+    friend class TexturedLookup;
     At(const TexturedData& data, const Parameters& parameters);
-    void fold(std::span<const float> cosines, FloatRgb* reflectance) const;
-    EvalPdf eval_pdf(const TexturedViewer& viewer, const Vec3& wo, const Vec3& wi) const;
-    EvalPdf eval_pdf(const TexturedGeneralViewer& viewer, const Vec3& wo, const Vec3& wi) const;
-    EvalPdf eval_pdf(const TexturedDenseViewer& viewer, const Vec3& wo, const Vec3& wi) const;
-    template <class Viewer>
-    EvalPdf factored_eval_pdf(const Viewer& viewer, const Vec3& wo, const Vec3& wi) const;
     template <class Call>
-    auto for_viewer(const Vec3& wo, Call call) const;
-    template <class Viewer>
-    std::optional<BsdfSample> sample_for(const Viewer& viewer, const Vec3& wo, Rng& rng) const;
+    auto with_lookup(const Vec3& wo, Call call) const;
+    template <class Lookup, class Viewer>
+    std::optional<BsdfSample> sample_for(const Lookup& lookup, const Viewer& viewer, const Vec3& wo,
+                                         Rng& rng) const;
 
     const TexturedData* data_;
     Parameters parameters_;
-    TexturedPlace place_;
-    TexturedFrame frame_;
+    ParameterTaps taps_;
+    PigmentCosines pigment_;
     PowerDensity rest_density_;
   };
 

@@ -23,19 +23,19 @@ double phi_share(int p, int phis) {
 
 TexturedFactor::TexturedFactor(const TexturedWaves& waves, const TexturedMedia& media, bool is_product)
     : waves_(waves), media_(media), grid_(waves.grid()), is_product_(is_product) {
-  take_frames();
+  take_cosines();
   take_quadrature();
   for (int d = 0; d < grid_.axes[0].size(); ++d) weigh(d);
 }
 
-void TexturedFactor::take_frames() {
+void TexturedFactor::take_cosines() {
   const Material& material = waves_.field().material();
-  const TexturedMaterial shared(material);
-  const TexturedFrame frame(shared, material.base_ior, material.optical_depth());
+  const FilmCosines film(material);
+  const PigmentCosines pigment(film, material.base_ior, material.optical_depth());
   for (int c = 0; c < kCosines; ++c) {
     const auto cosine = static_cast<float>(grid_.cosine(c));
-    film_cosines_[c] = std::min(std::sqrt(shared.film_cosine_squared(cosine)), 1.0f);
-    per_pigment_cosine_[c] = 1 / std::sqrt(frame.pigment_cosine_squared(cosine));
+    film_cosines_[c] = std::min(std::sqrt(film.film_cosine_squared(cosine)), 1.0f);
+    per_pigment_cosine_[c] = 1 / std::sqrt(pigment.pigment_cosine_squared(cosine));
   }
 }
 
@@ -141,7 +141,7 @@ double TexturedFactor::decay(int channel, int c) const {
 
 Color4 TexturedFactor::passing(int c, const FloatRgb& reflectance) const {
   return waves_.field().material().is_smooth() ? media_.passing(reflectance)
-                                               : TexturedMaterial::passing(film_cosines_[c]) + Color4{};
+                                               : FilmCosines::passing(film_cosines_[c]) + Color4{};
 }
 
 double TexturedFactor::first_chance(const FloatRgb& r, double rest, int c) const {

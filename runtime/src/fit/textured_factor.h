@@ -24,7 +24,7 @@ class TexturedFactor {
  private:
   static constexpr int kCosines = TexturedGrid::kCosines;
 
-  void take_frames();
+  void take_cosines();
   void take_quadrature();
   void weigh(int d);
   double hemispherical(const float* values) const;

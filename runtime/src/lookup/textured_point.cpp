@@ -13,7 +13,7 @@ double textured_path(const Material& material, double cosine) {
   return material.is_smooth() ? 1 : fringe_order(material, cosine) / fringe_order(material, 1);
 }
 
-TexturedMaterial::TexturedMaterial(const Material& material)
+FilmCosines::FilmCosines(const Material& material)
     : bends(material.transmission == Transmission::refract),
       exterior_ior(material.exterior_ior),
       pigment_thickness_nm(material.pigment_thickness_nm) {
@@ -28,7 +28,7 @@ TexturedMaterial::TexturedMaterial(const Material& material)
       square(material.is_smooth() ? kLeastSmoothFrame : std::max(std::sqrt(blur2), kLeastFrame)));
 }
 
-TexturedFrame::TexturedFrame(const TexturedMaterial& material, double base_ior, double depth)
+PigmentCosines::PigmentCosines(const FilmCosines& material, double base_ior, double depth)
     : least_below(material.least_below), optical_depth(static_cast<float>(depth)) {
   const double ratio2 = material.bends ? square(material.exterior_ior / base_ior) : 1;
   below_scale = static_cast<float>(ratio2);

@@ -49,7 +49,7 @@ Color4 TexturedRest::exchange(const Parameters& at, const PairEnd& o, const Pair
   return sum;
 }
 
-TexturedPlace TexturedRest::place(const Parameters& at) const {
+ParameterTaps TexturedRest::parameter_taps(const Parameters& at) const {
   const EvenPosition n = grid_.axes[1].locate(at.base_ior), s = grid_.axes[2].locate(at.absorption_per_nm);
   const auto nearest = [](const EvenPosition& x) { return x.lower + (x.upper_weight < 0.5f ? 0 : 1); };
   const float n_upper = n.upper_weight, s_upper = s.upper_weight;

@@ -19,24 +19,24 @@ class TexturedRest {
   bool is_plain() const { return grid_.phis == 1 && pairs_.empty(); }
   bool is_product() const { return !pairs_.empty(); }
 
-  TexturedPlace place(const Parameters& at) const;
+  ParameterTaps parameter_taps(const Parameters& at) const;
 
   // A direction among the nodes.
   struct Direction {
     EvenPosition path, cosine;
   };
-  // `path` is the root of TexturedMaterial::path_squared, `root` that of the cosine.
-  Direction direction(const TexturedPlace& place, float path, float root) const {
-    return {grid_.locate_path(place.thickness_nm, path), {root, TexturedGrid::kCosines}};
+  // `path` is the root of FilmCosines::path_squared, `root` that of the cosine.
+  Direction direction(const ParameterTaps& taps, float path, float root) const {
+    return {grid_.locate_path(taps.thickness_nm, path), {root, TexturedGrid::kCosines}};
   }
 
   // L; the last lane is the chance of sampling the first surface, interpolated too.
-  Color4 at(const TexturedPlace& place, const Direction& w) const {
-    const Color4* first = nodes_.data() + place.row + w.path.lower * stride_ + w.cosine.lower;
+  Color4 at(const ParameterTaps& taps, const Direction& w) const {
+    const Color4* first = nodes_.data() + taps.row + w.path.lower * stride_ + w.cosine.lower;
     const Color4* second = first + stride_;
     Color4 low[2]{}, high[2]{};
     for (std::size_t k = 0; k < 4; ++k) {
-      const Color4 weight = place.weight[k] + Color4{};
+      const Color4 weight = taps.weight[k] + Color4{};
       low[0] += weight * first[corner_[k]];
       high[0] += weight * first[corner_[k] + 1];
       low[1] += weight * second[corner_[k]];
@@ -47,10 +47,10 @@ class TexturedRest {
   }
 
   // The same of an anisotropic film; `phi` is the azimuth folded into a quadrant, over pi/2.
-  Color4 at(const TexturedPlace& place, const Direction& w, float phi) const {
-    if (grid_.phis == 1) return at(place, w);
+  Color4 at(const ParameterTaps& taps, const Direction& w, float phi) const {
+    if (grid_.phis == 1) return at(taps, w);
     const EvenPosition azimuth(phi, grid_.phis);
-    TexturedPlace lower = place, upper = place;
+    ParameterTaps lower = taps, upper = taps;
     lower.row += static_cast<std::size_t>(azimuth.lower * TexturedGrid::kCosines);
     upper.row = lower.row + TexturedGrid::kCosines;
     const Color4 low = at(lower, w);
@@ -65,15 +65,15 @@ class TexturedRest {
 
   // The chance of sampling the first surface, from the nearest parameters: they are given, and so the choice
   // need not change smoothly with them.
-  float first_chance(const TexturedPlace& place, const Direction& w) const {
+  float first_chance(const ParameterTaps& taps, const Direction& w) const {
     const int path = w.path.lower + (w.path.upper_weight < 0.5f ? 0 : 1);
-    const Color4* row = nodes_.data() + place.nearest + path * stride_ + w.cosine.lower;
+    const Color4* row = nodes_.data() + taps.nearest + path * stride_ + w.cosine.lower;
     return row[0][3] + w.cosine.upper_weight * (row[1][3] - row[0][3]);
   }
 
   // Asks for what at() will read, to work meanwhile.
-  void prefetch(const TexturedPlace& place, const Direction& w) const {
-    const Color4* first = nodes_.data() + place.row + w.path.lower * stride_ + w.cosine.lower;
+  void prefetch(const ParameterTaps& taps, const Direction& w) const {
+    const Color4* first = nodes_.data() + taps.row + w.path.lower * stride_ + w.cosine.lower;
     for (const int corner : corner_) {
       sunbeam::prefetch(first + corner);
       sunbeam::prefetch(first + corner + stride_);

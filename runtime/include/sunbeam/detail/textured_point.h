@@ -1,4 +1,4 @@
-// What a textured table knows of one parameter point; the library's own business.
+// What a textured table knows of one parameter point (textured_table.h); the library's own business.
 #pragma once
 
 #include <algorithm>
@@ -14,9 +14,10 @@ namespace sunbeam::inline v1 {
 // whose fringes are not in L.
 double textured_path(const Material& material, double cosine);
 
-// What of L's frame and place one table has for all points. Cosines are squared here.
-struct TexturedMaterial {
-  explicit TexturedMaterial(const Material& material);
+// The closed forms of the film that one table has for all points: c~, the path in the film, and what m~ needs
+// of the material. Cosines are squared here.
+struct FilmCosines {
+  explicit FilmCosines(const Material& material);
 
   // c~^2.
   float film_cosine_squared(float c) const { return film_scale * c * c + film_offset; }
@@ -36,9 +37,9 @@ struct TexturedMaterial {
   double exterior_ior, pigment_thickness_nm;
 };
 
-// The frame of L at one base and optical depth.
-struct TexturedFrame {
-  TexturedFrame(const TexturedMaterial& material, double base_ior, double optical_depth);
+// The closed forms of the pigment at one base IOR and optical depth: m~ and m.
+struct PigmentCosines {
+  PigmentCosines(const FilmCosines& material, double base_ior, double optical_depth);
 
   // m~^2.
   float pigment_cosine_squared(float c) const {
@@ -54,8 +55,8 @@ struct TexturedFrame {
   float optical_depth;
 };
 
-// Parameters among the nodes of L.
-struct TexturedPlace {
+// Where the base IOR and the absorption lie among the nodes of L, and the thickness.
+struct ParameterTaps {
   float thickness_nm;
   std::size_t row;              // the lowest of four neighbours, at the first path and cosine
   std::size_t nearest;          // of them

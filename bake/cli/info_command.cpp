@@ -32,16 +32,6 @@ Json describe(const std::vector<Axis>& axes) {
   return json;
 }
 
-// Those it has, in the order of its file.
-std::vector<const NdArray*> arrays_of(const Table& table) {
-  const Factors& f = table.factors;
-  std::vector<const NdArray*> arrays;
-  for (const NdArray* array : {&f.arrival, &f.exchange, &table.film_reflectance, &table.film_transmittance,
-                               &table.first_visit, &table.remainder, &table.rest_stderr, &f.returned})
-    if (!array->empty()) arrays.push_back(array);
-  return arrays;
-}
-
 const char* name_of(Precision precision) { return precision == Precision::half_float ? "half" : "float"; }
 
 Json describe(const Table& table, const std::string& path) {
@@ -50,7 +40,7 @@ Json describe(const Table& table, const std::string& path) {
   json["encoding"] = table.info.at("encoding");
   json["bytes"] = std::filesystem::file_size(path);
   json["axes"] = describe(axes_of(table));
-  for (const NdArray* array : arrays_of(table))
+  for (const NdArray* array : table.arrays())
     json["arrays"].push_back({{"name", array->name()},
                               {"precision", name_of(array->precision())},
                               {"axes", describe(array->axes())}});
@@ -78,7 +68,7 @@ void print_text(const Json& json, const Table& table) {
   for (const Axis& axis : axes_of(table))
     fmt::print("axis            {:<18} {:>4} nodes, {:g} to {:g} {}\n", axis.name, axis.size(),
                axis.nodes.front(), axis.nodes.back(), axis.unit == "1" ? "" : axis.unit);
-  for (const NdArray* array : arrays_of(table)) {
+  for (const NdArray* array : table.arrays()) {
     fmt::print("array           {:<18} {}:", array->name(), name_of(array->precision()));
     for (const Axis& axis : array->axes()) fmt::print(" {} {}", axis.name, axis.size());
     fmt::print("\n");

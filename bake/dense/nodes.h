@@ -6,6 +6,7 @@
 #include "bake/blocks/job.h"
 #include "bake/dense/equal_cells.h"
 #include "bake/recipe/recipe.h"
+#include "sunbeam/detail/rest_frame.h"
 #include "sunbeam/table.h"
 
 namespace sunbeam {

@@ -32,7 +32,6 @@
 
 #include <array>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -105,47 +104,10 @@ struct Table {
   // T at a node or between: see above. `x` = (film_thickness_nm, base_ior, cos_theta).
   Rgb transmittance(const std::array<double, 3>& x) const;
 
+  // The arrays that it has, by name: the order of its file.
+  std::vector<const NdArray*> arrays() const;
+
   bool operator==(const Table& other) const;
-};
-
-// The remainder's closed frame at one parameter point, shared by the bake (encode) and the look-up (decode).
-class RestFrame {
- public:
-  // Where the remainder does not decay it has lobes, of a peaked phase function or of nearly smooth facets at
-  // grazing, too high for a half float, which ends at 65504, and too narrow for any table. encode() cuts
-  // them.
-  static constexpr double kLargestRemainder = 60000;
-
-  // `first_visit` as in Table: empty for rgb3.
-  explicit RestFrame(const Material& material, const NdArray& first_visit = {});
-
-  // The same over another material; allocates nothing and lives no longer than this one.
-  RestFrame over(const Material& material) const;
-
-  Rgb decode(const Rgb& remainder, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
-  Rgb encode(const Rgb& rest, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
-
- private:
-  // F at even steps of x / (1 + x) from 0 to 1: no search, no root; none for rgb3.
-  using FirstVisit = std::shared_ptr<const std::vector<Rgb>>;
-  RestFrame(const Material& material, FirstVisit first_visit);
-
-  struct Terms {
-    Rgb front;        // s T T
-    Rgb first_visit;  // in brackets, first term
-    Rgb decay;        // in brackets, what the remainder is multiplied by
-  };
-  Rgb factor(const Rgb& transmittance) const;
-  Rgb first_visit(double optical_path) const;
-  Terms rgb3_terms(double m_i, double m_o) const;    // without front
-  Terms folded_terms(double m_i, double m_o) const;  // the same for full
-  Terms terms(double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
-
-  Material material_;
-  double scale_;
-  double least_transmittance_;
-  bool decays_;
-  FirstVisit first_visit_;
 };
 
 }  // namespace sunbeam::inline v1

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/src/lookup/dense_angles.h"
+#include "sunbeam/detail/rest_frame.h"
 #include "sunbeam/table.h"
 
 namespace sunbeam::inline v1 {

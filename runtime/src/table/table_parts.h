@@ -1,4 +1,5 @@
-// The neutral form between a Table and a file: text attributes and named arrays. Checks live here, once.
+// The neutral form between a Table and a file: text attributes and named arrays. Checks are in
+// table_checks.h.
 #pragma once
 
 #include <functional>

@@ -1,6 +1,7 @@
 // Tables of folded spectra: what their file must say, and their frame.
 #include <gtest/gtest.h>
 
+#include "sunbeam/detail/rest_frame.h"
 #include "sunbeam/table_bsdf.h"
 #include "tests/table/support.h"
 

@@ -1,4 +1,6 @@
 // The frame that remainders are stored in, against its formula in table.h.
+#include "sunbeam/detail/rest_frame.h"
+
 #include <gtest/gtest.h>
 
 #include <limits>

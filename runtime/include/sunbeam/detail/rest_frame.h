@@ -1,0 +1,53 @@
+// The closed frame that the remainder of a dense table stands in (sunbeam/table.h), at one parameter point.
+// The bake encodes (bake/dense/nodes.h) and look-ups decode (runtime/src/lookup/dense_rest.h). Both are here
+// since each is the inverse of the other.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sunbeam/detail/nd_array.h"
+#include "sunbeam/material.h"
+
+namespace sunbeam::inline v1 {
+
+class RestFrame {
+ public:
+  // Where the remainder does not decay it has lobes, of a peaked phase function or of nearly smooth facets at
+  // grazing, too high for a half float, which ends at 65504, and too narrow for any table. encode() cuts
+  // them.
+  static constexpr double kLargestRemainder = 60000;
+
+  // `first_visit` as in Table: empty for rgb3.
+  explicit RestFrame(const Material& material, const NdArray& first_visit = {});
+
+  // The same over another material; allocates nothing and lives no longer than this one.
+  RestFrame over(const Material& material) const;
+
+  Rgb decode(const Rgb& remainder, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
+  Rgb encode(const Rgb& rest, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
+
+ private:
+  // F at even steps of x / (1 + x) from 0 to 1: no search, no root; none for rgb3.
+  using FirstVisit = std::shared_ptr<const std::vector<Rgb>>;
+  RestFrame(const Material& material, FirstVisit first_visit);
+
+  struct Terms {
+    Rgb front;        // s T T
+    Rgb first_visit;  // in brackets, first term
+    Rgb decay;        // in brackets, what the remainder is multiplied by
+  };
+  Rgb factor(const Rgb& transmittance) const;
+  Rgb first_visit(double optical_path) const;
+  Terms rgb3_terms(double m_i, double m_o) const;    // without front
+  Terms folded_terms(double m_i, double m_o) const;  // the same for full
+  Terms terms(double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
+
+  Material material_;
+  double scale_;
+  double least_transmittance_;
+  bool decays_;
+  FirstVisit first_visit_;
+};
+
+}  // namespace sunbeam::inline v1

@@ -1,0 +1,137 @@
+#include "runtime/src/table/table_checks.h"
+
+#include <algorithm>
+
+#include "sunbeam/core/error.h"
+#include "sunbeam/detail/text.h"
+
+namespace sunbeam::inline v1 {
+namespace {
+
+const NdArray* find(const TableParts& parts, const std::string& name) {
+  const auto at =
+      std::find_if(parts.arrays.begin(), parts.arrays.end(), [&](const auto& a) { return a.name() == name; });
+  return at == parts.arrays.end() ? nullptr : &*at;
+}
+
+std::string inventory(const TableParts& parts) {
+  std::string list;
+  for (const auto& array : parts.arrays) list += (list.empty() ? "" : ", ") + array.name();
+  return list.empty() ? "no array" : list;
+}
+
+void check_axis_range(const Axis& axis, double low, double high) {
+  if (axis.nodes.front() < low || axis.nodes.back() > high)
+    throw Error("axis '" + axis.name + "' leaves " + to_text(low) + " to " + to_text(high));
+}
+
+void check_period(const Axis& axis, double period) {
+  if (axis.period != period)
+    throw Error("axis '" + axis.name + "' has period " + to_text(axis.period) + "; expected " +
+                to_text(period));
+}
+
+// Look-ups at azimuths beyond the nodes would be clamped, hence the ends.
+void check_ends(const Axis& axis, double low, double high) {
+  if (axis.nodes.front() != low || axis.nodes.back() != high)
+    throw Error("axis '" + axis.name + "' runs from " + to_text(axis.nodes.front()) + " to " +
+                to_text(axis.nodes.back()) + "; expected " + to_text(low) + " to " + to_text(high));
+}
+
+void check_azimuths(Symmetry symmetry, const Axis& phi_i, const Axis& phi_o) {
+  check_period(phi_i, 0);
+  if (symmetry == Symmetry::isotropic) {
+    if (phi_i.size() != 1)
+      throw Error("axis 'phi_i' has " + std::to_string(phi_i.size()) + " nodes; an isotropic table has 1");
+    check_period(phi_o, 0);
+    check_axis_range(phi_o, 0, kPi);
+    if (phi_o.size() > 1) check_ends(phi_o, 0, kPi);
+  } else {
+    check_ends(phi_i, 0, kPi / 2);
+    check_period(phi_o, 2 * kPi);
+    check_axis_range(phi_o, 0, 2 * kPi);
+  }
+}
+
+}  // namespace
+
+std::string name_of(Symmetry symmetry) {
+  return symmetry == Symmetry::isotropic ? "isotropic" : "anisotropic";
+}
+
+void require_finite(const NdArray& array, const DenseCells* cells) {
+  visit_values(array, cells, [&](std::size_t, std::span<const float> values) {
+    for (const float value : values)
+      if (!std::isfinite(value)) throw Error("array '" + array.name() + "' holds a value that is not finite");
+  });
+}
+
+NdArray checked_array(const TableParts& parts, const std::string& name,
+                      std::span<const char* const> axis_names, std::size_t channels) {
+  const NdArray* array = find(parts, name);
+  if (!array) throw Error("array '" + name + "' is missing (the file holds: " + inventory(parts) + ")");
+  if (array->axes().size() != axis_names.size())
+    throw Error("array '" + name + "' has " + std::to_string(array->axes().size()) + " axes; expected " +
+                std::to_string(axis_names.size()));
+  for (std::size_t k = 0; k < axis_names.size(); ++k)
+    if (array->axes()[k].name != axis_names[k])
+      throw Error("array '" + name + "': axis " + std::to_string(k) + " is '" + array->axes()[k].name +
+                  "'; expected '" + axis_names[k] + "'");
+  if (array->channels() != channels)
+    throw Error("array '" + name + "' holds " +
+                (channels == 1 ? "colours; expected numbers" : "numbers; expected colours"));
+  require_finite(*array);
+  return *array;
+}
+
+void check_symmetry(const Table& table) {
+  const bool isotropic = table.material.roughness.is_isotropic();
+  if (isotropic == (table.symmetry == Symmetry::isotropic)) return;
+  throw Error("symmetry is " + name_of(table.symmetry) + " but material.roughness is " +
+              to_string(table.material.roughness) + "; expected symmetry " +
+              name_of(isotropic ? Symmetry::isotropic : Symmetry::anisotropic));
+}
+
+void check_ranges(const Table& table) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Interval allowed = allowed_interval(kParameterNames[k]);
+    check_axis_range(table.parameter_axis(k), allowed.low, allowed.high);
+  }
+  if (table.is_factored()) return;
+  const auto& axes = table.remainder.axes();
+  for (const std::size_t k : {3u, 5u}) check_axis_range(axes[k], 1e-6, 1);
+  check_azimuths(table.symmetry, axes[4], axes[6]);
+  check_axis_range(table.film_reflectance.axes()[2], 0, 1);
+  if (table.rest_stderr.axes() != axes) throw Error("array 'rest_stderr' has other axes than 'remainder'");
+  if (!table.film_transmittance.empty() && table.film_transmittance.axes() != table.film_reflectance.axes())
+    throw Error("array 'film_transmittance' has other axes than 'film_reflectance'");
+}
+
+void check_factor_axes(const Table& table, const NdArray& array, std::size_t first_cosine) {
+  const auto& axes = array.axes();
+  check_axis_range(axes[0], 1, 5);
+  check_axis_range(axes[1], 0, 1e12);
+  for (std::size_t k = first_cosine; k < axes.size(); k += 2) {
+    check_axis_range(axes[k], 1e-6, 1);
+    check_period(axes[k + 1], 0);
+    if (table.symmetry == Symmetry::anisotropic) {
+      check_ends(axes[k + 1], 0, kPi / 2);
+    } else if (axes[k + 1].size() != 1) {
+      throw Error("axis '" + axes[k + 1].name + "' has " + std::to_string(axes[k + 1].size()) +
+                  " nodes; an isotropic table has 1");
+    }
+  }
+}
+
+// Look-ups locate wi and wo on the same nodes.
+void check_same_ends(const NdArray& exchange) {
+  const auto& axes = exchange.axes();
+  for (const std::size_t k : {4u, 5u}) {
+    Axis like_o = axes[k];
+    like_o.name = axes[k + 2].name;
+    if (!(like_o == axes[k + 2]))
+      throw Error("array 'exchange': axes '" + axes[k].name + "' and '" + like_o.name + "' differ");
+  }
+}
+
+}  // namespace sunbeam::inline v1

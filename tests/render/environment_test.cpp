@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/render/support.h"
+#include "tests/support/warps.h"
 
 namespace sunbeam {
 namespace {

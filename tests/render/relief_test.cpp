@@ -8,6 +8,7 @@
 #include "runtime/tracer/scales.h"
 #include "sunbeam/core/frame.h"
 #include "tests/render/support.h"
+#include "tests/support/warps.h"
 
 namespace sunbeam {
 namespace {

@@ -10,6 +10,7 @@
 #include "sunbeam/core/frame.h"
 #include "sunbeam/detail/warp.h"
 #include "tests/render/support.h"
+#include "tests/support/warps.h"
 
 namespace sunbeam {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "sunbeam/bsdf.h"
-#include "sunbeam/detail/warp.h"
 #include "tests/support/stats.h"
+#include "tests/support/warps.h"
 
 namespace sunbeam::test {
 

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "sunbeam/core/rng.h"
-#include "sunbeam/detail/warp.h"
 #include "sunbeam/material.h"
+#include "tests/support/warps.h"
 
 namespace sunbeam {
 

@@ -1,6 +1,7 @@
 // eval, sample, pdf and albedo of factored tables agree with each other and with what is known exactly.
 #include "tests/accuracy/factored/support.h"
 #include "tests/support/bsdf_checks.h"
+#include "tests/support/warps.h"
 
 namespace sunbeam {
 namespace {

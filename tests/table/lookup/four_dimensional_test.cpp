@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "sunbeam/table_bsdf.h"
+#include "tests/support/angle_pairs.h"
 #include "tests/support/bsdf_checks.h"
 #include "tests/table/support.h"
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/angle_pairs.h"
 #include "tests/support/bsdf_checks.h"
 
 namespace sunbeam {

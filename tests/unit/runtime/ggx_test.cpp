@@ -5,6 +5,7 @@
 #include "sunbeam/core/rng.h"
 #include "tests/support/quadrature.h"
 #include "tests/support/stats.h"
+#include "tests/support/warps.h"
 
 namespace sunbeam {
 namespace {

@@ -5,6 +5,7 @@
 #include "sunbeam/core/frame.h"
 #include "sunbeam/core/rng.h"
 #include "sunbeam/detail/warp.h"
+#include "tests/support/warps.h"
 
 namespace sunbeam {
 namespace {

@@ -1,4 +1,5 @@
-// Direction pairs <-> table coordinates. Map, inverse and Jacobian stand side by side.
+// Direction pairs -> table coordinates. The inverse and the Jacobian, which only tests need, are in
+// tests/support/angle_pairs.h.
 //
 // A table has four angular axes, cosines and azimuths (radians): (cos_theta_i, phi_i, cos_theta_o, phi_o).
 // anisotropic: the film is its own mirror image in x and in y. Both directions are mirrored such that wi has
@@ -42,19 +43,6 @@ inline AngleCoordinates to_coordinates(Symmetry symmetry, const DirectionPair& p
   }
   const double between = std::abs(azimuth(pair.wo) - azimuth(pair.wi));
   return {pair.wi.z, 0, pair.wo.z, std::min(between, 2 * kPi - between)};
-}
-
-// A pair with these coordinates; for an anisotropic table the folded one, for an isotropic one that with wi
-// in the xz plane and wo at +|dphi|.
-inline DirectionPair to_directions(const AngleCoordinates& c) {
-  return {direction_from_cosine(c.cos_o, c.phi_o), direction_from_cosine(c.cos_i, c.phi_i)};
-}
-
-// Measure of direction pairs per unit of coordinates, dwi dwo / d(coordinates), in sr^2. Cosines make it
-// constant; an anisotropic coordinate stands for four mirror images, an isotropic one for every common
-// azimuth (2 pi) and both signs of dphi (2).
-inline constexpr double pair_measure(Symmetry symmetry) {
-  return symmetry == Symmetry::anisotropic ? 4 : 4 * kPi;
 }
 
 }  // namespace sunbeam::inline v1

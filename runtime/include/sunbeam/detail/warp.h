@@ -1,4 +1,4 @@
-// Maps from the unit square to directions, each with its density and its inverse beside it.
+// Maps from the unit square to directions.
 // Densities are per solid angle (1/sr); directions lie in the hemisphere z > 0.
 #pragma once
 
@@ -9,25 +9,6 @@ namespace sunbeam::inline v1 {
 struct Point2 {
   double x = 0, y = 0;
 };
-
-// Directions with density proportional to cos^exponent. exponent = 1 is the cosine-weighted hemisphere.
-inline Vec3 sample_power_cosine(double exponent, const Point2& u) {
-  return direction_from_cosine(std::pow(1 - u.x, 1 / (exponent + 1)), 2 * kPi * u.y);
-}
-inline double power_cosine_pdf(double exponent, double cos_theta) {
-  return cos_theta <= 0 ? 0 : (exponent + 1) / (2 * kPi) * std::pow(cos_theta, exponent);
-}
-inline Point2 invert_power_cosine(double exponent, const Vec3& w) {
-  const double phi = std::atan2(w.y, w.x);
-  return {1 - std::pow(w.z, exponent + 1), (phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi)};
-}
-
-inline double cosine_pdf(double cos_theta) { return std::max(0.0, cos_theta) * kInvPi; }
-inline Point2 invert_cosine(const Vec3& w) { return invert_power_cosine(1, w); }
-
-// Uniform over the whole sphere.
-inline Vec3 sample_sphere(const Point2& u) { return direction_from_cosine(1 - 2 * u.x, 2 * kPi * u.y); }
-inline constexpr double sphere_pdf() { return kInvPi / 4; }
 
 // Cosine and sine of 2 pi u, u in [0, 1), to 1e-15: by polynomials, in a third of the library's time.
 struct Turn {
@@ -54,11 +35,12 @@ struct Turn {
   double cosine, sine;
 };
 
-// The cosine-weighted hemisphere, z > 0.
+// The cosine-weighted hemisphere, z > 0, and its density.
 inline Vec3 sample_cosine(const Point2& u) {
   const double radius = std::sqrt(u.x);
   const Turn turn(u.y);
   return {radius * turn.cosine, radius * turn.sine, std::sqrt(1 - u.x)};
 }
+inline double cosine_pdf(double cos_theta) { return std::max(0.0, cos_theta) * kInvPi; }
 
 }  // namespace sunbeam::inline v1

@@ -84,7 +84,7 @@ double Pfmc::mean_power(const Powers& powers) const {
 
 Pfmc::Powers Pfmc::reflectances(const walk::FilmSide& film, double cosine) const {
   Powers powers;
-  const walk::FilmLanes<double> lanes(film, layers_.phases, std::clamp(cosine, 0.0, 1.0));
+  const walk::FilmPackets<double> lanes(film, layers_.phases, std::clamp(cosine, 0.0, 1.0));
   lanes.reflectances([&](int k, double r) { powers[k] = r; });
   return powers;
 }
@@ -213,12 +213,12 @@ std::optional<BsdfSample> Pfmc::sample(const Vec3& wo, Rng& rng, const Pfmc& bel
     return BsdfSample{reflect(wo, facet_normal(wo, facet, rng)),
                       fold(power.data()) * (up.weight / reflect_chance), layers_.is_smooth(), 0};
   }
-  const auto passage = events.cross(wo.z, facet, layers_.index_ratio);
-  if (passage.weight == 0) return {};
-  const double share = passage.weight / (1 - reflect_chance);
+  const auto crossing = events.cross(wo.z, facet, layers_.index_ratio);
+  if (crossing.weight == 0) return {};
+  const double share = crossing.weight / (1 - reflect_chance);
   Powers entered = &below == this ? power : below.reflectances(layers_.film, facet.cosine);
   for (int k = 0; k < below.layers_.count; ++k) entered[k] = (1 - entered[k]) * share;
-  return below.sample_below(passage.cosine, entered, rng);
+  return below.sample_below(crossing.cosine, entered, rng);
 }
 
 // A walk that reaches the base at `cosine`.
@@ -252,9 +252,9 @@ std::optional<BsdfSample> Pfmc::sample_below(double cosine, Powers& throughput, 
 double Pfmc::leave_pdf(const Vec3& wi, Rng& rng, double& cosine) const {
   const Lane events(layers_);
   const auto facet = events.meet(wi.z, rng);
-  const auto passage = events.cross(wi.z, facet, layers_.index_ratio);
-  cosine = passage.cosine;
-  if (passage.weight == 0) return 0;
+  const auto crossing = events.cross(wi.z, facet, layers_.index_ratio);
+  cosine = crossing.cosine;
+  if (crossing.weight == 0) return 0;
   const double pass_chance = 1 - mean_reflectance(facet.cosine);
   if (!layers_.bends) return pass_chance;
   const double solid_angles = square(layers_.index_ratio) * wi.z / cosine;
@@ -266,9 +266,9 @@ double Pfmc::estimate_pdf(const Vec3& wo, const Vec3& wi, Rng& rng, const Pfmc& 
   if (family_ != Family::plain) return below.first_pdf(wo, wi) + below.estimate_stack_pdf(wo, wi, rng);
   const Lane events(layers_);
   const auto facet = events.meet(wo.z, rng);
-  const auto passage = events.cross(wo.z, facet, layers_.index_ratio);
+  const auto crossing = events.cross(wo.z, facet, layers_.index_ratio);
   const double first = first_pdf(wo, wi);
-  if (passage.weight == 0) return first;
+  if (crossing.weight == 0) return first;
   return first + (1 - reflect_chance(facet.cosine)) * below.pdf_below(wi, rng);
 }
 

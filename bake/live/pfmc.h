@@ -7,7 +7,7 @@
 // Unidirectional: walks from wi connect to wo through the film at every visit of the base (unidirectional.h).
 // Bidirectional: walks from both sides, every connection, weighted by the balance heuristic
 // (bidirectional.h). Both are unbiased and exact in expectation for every film, smooth or rough, straight or
-// refracting. Reciprocity of the passage turns leaving into entering, which leaves one factor (n0/n2)^2 on
+// refracting. Reciprocity of the crossing turns leaving into entering, which leaves one factor (n0/n2)^2 on
 // the whole rest.
 //
 // For plain materials (Material::is_plain) one estimate is the mean of kLanes stratified walks, worked on

@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kLanes = 8;
 constexpr double kLeastCosine2 = 1e-12;  // in the film, instead of 0/0; the powers are continuous there
 
-// Both polarisations' (q0 +- q2)^2, (b +- d)^2 / c1^2 and 2 q0 q2: see film_packets.h.
+// One polarisation's (q0 +- q2)^2, (b +- d)^2 / c1^2 and 2 q0 q2, in the letters of thin_film.h.
 struct Polarisation {
   double sum, difference, plus, minus, product;
 };
@@ -74,7 +74,7 @@ void film_fringes(const ThinFilm& film, double cosine, double first, double step
   }
   const double c1_2 = std::max(c1_squared, kLeastCosine2), c1 = std::sqrt(c1_2), c2 = std::sqrt(c2_squared);
   const double n0 = film.exterior_ior, n1 = film.film_ior, n2 = film.base_ior;
-  // S^2 / c1^2 of film_packets.h with b = q0 q2 c1 / q1 and d = q1 c1: here both carry their c1.
+  // Here b and d carry one more c1 each than in thin_film.h, and add_waves() takes sin^2 for y.
   const Polarisation s = polarisation(n0 * cosine, n2 * c2, 1 / n1, n1 * c1_2, c1_2);
   const Polarisation p = polarisation(cosine / n0, c2 / n2, n1, c1_2 / n1, c1_2);
   const double phase = 4 * kPi * n1 * c1;

@@ -1,4 +1,5 @@
-// A thin film at many thicknesses in equal steps: the powers of thin_film.h with all but the phase shared.
+// Airy's powers (thin_film.h has the equations and their letters) for fringe axes: double precision, lanes
+// are thicknesses in equal steps, which share all but the phase; the phase goes on by rotation.
 #pragma once
 
 #include <span>

@@ -63,8 +63,8 @@ class Spectrum {
   ColorSpace color_space_ = ColorSpace::rec709;
   WavelengthQuadrature quadrature_;  // empty: rgb3
   AbsorptionShape absorption_ = AbsorptionShape::flat();
-  Rgb albedo_;                  // the RGB albedo to which
-  SpectralCurve albedo_curve_;  // this belongs; empty if none is set
+  Rgb albedo_;                  // RGB albedo of the base, to which albedo_curve_ belongs
+  SpectralCurve albedo_curve_;  // empty if no albedo is set
 };
 
 }  // namespace sunbeam

@@ -7,8 +7,8 @@
 namespace sunbeam {
 namespace {
 
-// Wavelengths are worked on side by side in fixed arrays that the compiler turns into vector instructions;
-// the fourth lane repeats the third.
+// The reference form: double precision, lanes are three wavelengths, side by side in fixed arrays that the
+// compiler turns into vector instructions; the fourth lane repeats the third.
 constexpr int kLanes = 4;
 using Lanes = std::array<double, kLanes>;
 

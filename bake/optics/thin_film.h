@@ -7,7 +7,15 @@
 //     A, C = (q0 -+ q2) cos(k c1),   B, D = (q0 q2 / q1 -+ q1) sin(k c1).
 // Written so, nothing is singular at c1 = 0 and every quantity stays real when the wave is evanescent inside
 // the film (cos, sin become cosh, sinh: frustrated total reflection). Source: Born and Wolf, sec. 1.6.
-// The transmittance 4 q0 q2 / (C^2 + D^2) has no cancellation, so both powers keep their relative precision.
+// Fresnel's coefficients r_ij = (q_i - q_j) / (q_i + q_j), up to the sign of p, are never formed: without a
+// film (d = 0) what is left of the fraction is r02.
+//
+// The powers of one polarisation follow. With b = q0 q2 c1 / q1 and d = q1 c1, and for the phase
+// x = cos^2(k c1) and y = sin^2(k c1) / c1^2, which are smooth at c1 = 0,
+//     R = [(q0 - q2)^2 x + (b - d)^2 y] / D,   T = 4 q0 q2 / D,   D = (q0 + q2)^2 x + (b + d)^2 y.
+// In evanescent waves x and y become 1 and tanh^2 / |c1|^2, and T is divided by cosh^2. T has no
+// cancellation, so both powers keep their relative precision; unpolarised light takes the mean of s and p.
+// Kernels elsewhere compute the same: each says at its head which part of these equations its lanes share.
 #pragma once
 
 #include "sunbeam/core/vec.h"
@@ -41,7 +49,7 @@ struct FilmPower {
 FilmPower airy(const ThinFilm& film, double cos_exterior, const Rgb& wavelengths_nm);
 
 // n0 / n2 if light bends when it passes the film, else 1: "straight", or media so alike that the half vector
-// of a passage has no digits left.
+// of a crossing has no digits left.
 inline double bending_index_ratio(const Material& material) {
   constexpr double kIndexMatch = 1e-7;
   const double ratio = material.exterior_ior / material.base_ior;

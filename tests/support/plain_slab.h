@@ -39,9 +39,9 @@ class PlainFilm {
   PlainFilm(const Material& material, const Rgb& wavelengths_nm) : film_(material, wavelengths_nm) {}
 
   std::optional<FilmEvent> enter(const Vec3& wi, Rng& rng) const {
-    const auto passage = film_.cross(wi, film_.meet_from_outside(wi, rng));
-    if (!passage) return {};
-    return FilmEvent{-passage->inside, passage->weight, false};
+    const auto crossing = film_.cross(wi, film_.meet_from_outside(wi, rng));
+    if (!crossing) return {};
+    return FilmEvent{-crossing->inside, crossing->weight, false};
   }
 
   std::optional<FilmEvent> meet_from_below(const Vec3& travel, Rng& rng) const {

@@ -17,7 +17,7 @@ class PlainWalk {
         radiance_scale_(material.radiance_scale()),
         brightest_albedo_(max_component(material.albedo)) {}
 
-  // One unbiased estimate of rest(wo, wi), 1/sr: at every visit of the base a passage drawn from wo and the
+  // One unbiased estimate of rest(wo, wi), 1/sr: at every visit of the base a crossing drawn from wo and the
   // walk's own way out, combined by the balance heuristic over inside directions.
   Rgb estimate_rest(const Vec3& wo, const Vec3& wi, Rng& rng) const {
     const auto entry = film_.cross(wi, film_.meet_from_outside(wi, rng));
@@ -32,12 +32,12 @@ class PlainWalk {
 
  private:
   Rgb connect(const Vec3& m, const Rgb& throughput, const Vec3& wo, Rng& rng) const {
-    const auto passage = film_.cross(wo, film_.meet_from_outside(wo, rng));
-    if (!passage) return {};
-    const double mis = passage->density > 0
-                           ? passage->density / (passage->density + base_.density(m.z, passage->inside.z))
+    const auto crossing = film_.cross(wo, film_.meet_from_outside(wo, rng));
+    if (!crossing) return {};
+    const double mis = crossing->density > 0
+                           ? crossing->density / (crossing->density + base_.density(m.z, crossing->inside.z))
                            : 1;
-    return throughput * base_.value(m.z, passage->inside.z) * passage->weight * (mis * radiance_scale_);
+    return throughput * base_.value(m.z, crossing->inside.z) * crossing->weight * (mis * radiance_scale_);
   }
 
   // From the base up to the film and back down. False when the walk ends.

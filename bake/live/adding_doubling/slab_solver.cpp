@@ -40,7 +40,7 @@ double sine_of(double cosine) { return std::sqrt(1 - square(cosine)); }
 // (1 - exp(-x)) / x.
 double mean_decay(double x) { return x > 0 ? -std::expm1(-x) / x : 1; }
 
-// Facets that a direction at `cosine` and azimuth 0 sees, on one side of its plane: calls visit(h, share).
+// FacetList that a direction at `cosine` and azimuth 0 sees, on one side of its plane: calls visit(h, share).
 template <class Visit>
 void each_facet(const FilmGeometry& film, double cosine, const SlabSolver::Resolution& resolution,
                 Visit visit) {
@@ -174,8 +174,8 @@ SlabSolver::Facet SlabSolver::facet(double cosine, double share, const Vec3& on)
   return facet;
 }
 
-SlabSolver::Facets SlabSolver::facets_of_entry(const Vec3& w) const {
-  Facets facets;
+SlabSolver::FacetList SlabSolver::facets_of_entry(const Vec3& w) const {
+  FacetList facets;
   each_facet(geometry_, w.z, resolution_, [&](const Vec3& h, double share) {
     if (const auto inside = geometry_.cross(w, h))
       facets.push_back(facet(dot(w, h), share * inside->share, inside->direction));
@@ -183,9 +183,9 @@ SlabSolver::Facets SlabSolver::facets_of_entry(const Vec3& w) const {
   return facets;
 }
 
-SlabSolver::Facets SlabSolver::facets_thrown_back(int from) const {
+SlabSolver::FacetList SlabSolver::facets_thrown_back(int from) const {
   const Vec3 u = direction_from_cosine(nodes_.cosine[from], 0);
-  Facets facets;
+  FacetList facets;
   each_facet(geometry_, u.z, resolution_, [&](const Vec3& h, double share) {
     if (const auto down = geometry_.mirror(u, h))
       facets.push_back(facet(dot(u, h), nodes_.root[from] * (share * down->share), down->direction));
@@ -289,7 +289,7 @@ std::vector<double> SlabSolver::transmittances(std::span<const double> orders, s
 }
 
 // By (mode, row, node, order).
-std::vector<double> SlabSolver::moments(const std::vector<Facets>& rows, const walk::FilmSide& film,
+std::vector<double> SlabSolver::moments(const std::vector<FacetList>& rows, const walk::FilmSide& film,
                                         bool lets_through, std::span<const double> orders) const {
   const walk::FilmPhases phases = phases_at(orders);
   const walk::Kernels& kernels = walk::best_kernels();

@@ -4,7 +4,7 @@
 // Directions below the film are Gauss nodes of the cosine m, m_j of weight w_j, M = diag(2 pi w_j m_j). Per
 // wavelength and mode k, with Int g cos(k phi) dphi of what light carries and 1/(2 pi) Int g cos(k phi) dphi
 // of what it is carried by:
-//   E_w  light that enters along w, per node: moments of the film's passage at its facets,
+//   E_w  light that enters along w, per node: moments of the film's crossing at its facets,
 //   F    light that the film throws back down, from node to node, the same of its reflection,
 //   R, T of the pigment alone (functions: radiance that leaves, for power that arrives), by doubling a layer
 //        thin enough to scatter once.
@@ -144,7 +144,7 @@ class SlabSolver {
     // Its part in moments at these nodes, of even and odd modes.
     std::array<double, Nodes::kStencil> even, odd;
   };
-  using Facets = std::vector<Facet>;
+  using FacetList = std::vector<Facet>;
 
   // R and T between nodes, times the roots of M on both sides.
   struct Layer {
@@ -157,12 +157,12 @@ class SlabSolver {
   };
 
   static Nodes make_nodes(const Material& material, const Resolution& resolution);
-  Facets facets_of_entry(const Vec3& w) const;
-  Facets facets_thrown_back(int from) const;
+  FacetList facets_of_entry(const Vec3& w) const;
+  FacetList facets_thrown_back(int from) const;
   Facet facet(double cosine, double share, const Vec3& on) const;
   int modes_above(double faintest) const;
-  std::vector<double> moments(const std::vector<Facets>& rows, const walk::FilmSide& film, bool lets_through,
-                              std::span<const double> orders) const;
+  std::vector<double> moments(const std::vector<FacetList>& rows, const walk::FilmSide& film,
+                              bool lets_through, std::span<const double> orders) const;
   Phase phase(int mode) const;
   Layer make_layer(double depth) const;
   void double_up(int mode, double depth, Matrix& r, Matrix& t) const;
@@ -173,9 +173,9 @@ class SlabSolver {
   std::vector<double> cosines_;
   Resolution resolution_;
   Nodes nodes_;
-  int terms_;                                // of the phase function's Legendre series
-  int modes_;                                // of the azimuth
-  std::vector<Facets> entry_, thrown_back_;  // by cosine; by node
+  int terms_;                                   // of the phase function's Legendre series
+  int modes_;                                   // of the azimuth
+  std::vector<FacetList> entry_, thrown_back_;  // by cosine; by node
   std::map<double, Layer> layers_;
   std::mutex mutex_;  // guards layers_
 };

@@ -77,41 +77,41 @@ ExactTriple::Vectors ExactTriple::towards_nodes(double cosine) const {
 }
 
 // What the film lets through, all in all.
-Rgb ExactTriple::passing(const std::vector<Passage>& passages) const {
+Rgb ExactTriple::passing(const std::vector<CrossingNode>& crossings) const {
   Rgb sum;
-  for (const Passage& passage : passages) sum += film_.transmittance(passage) * passage.share;
+  for (const CrossingNode& crossing : crossings) sum += film_.transmittance(crossing) * crossing.share;
   return sum;
 }
 
-Rgb ExactTriple::arriving(const std::vector<Passage>& passages) const {
+Rgb ExactTriple::arriving(const std::vector<CrossingNode>& crossings) const {
   const auto pigment = [&](double cosine) { return attenuation(-material_.optical_depth() / cosine); };
-  if (passages.empty()) return {};
-  if (film_.has_single_crossing()) return passing(passages) * pigment(passages.front().cosine);
+  if (crossings.empty()) return {};
+  if (film_.has_single_crossing()) return passing(crossings) * pigment(crossings.front().cosine);
   Rgb sum;
-  for (const Passage& passage : passages)
-    sum += film_.transmittance(passage) * pigment(passage.cosine) * passage.share;
+  for (const CrossingNode& crossing : crossings)
+    sum += film_.transmittance(crossing) * pigment(crossing.cosine) * crossing.share;
   return sum;
 }
 
 // p_t(w -> m) as weights of the nodes: interpolates what it will be multiplied with.
-ExactTriple::Vectors ExactTriple::on_nodes(const std::vector<Passage>& passages) const {
+ExactTriple::Vectors ExactTriple::on_nodes(const std::vector<CrossingNode>& crossings) const {
   const CosineBasis& basis = film_.basis();
   Vectors sum;
   sum.fill(Vector(basis.size()));
-  for (const Passage& passage : passages) {
-    const auto stencil = basis.at(passage.cosine);
-    const Rgb power = film_.transmittance(passage) * passage.share;
+  for (const CrossingNode& crossing : crossings) {
+    const auto stencil = basis.at(crossing.cosine);
+    const Rgb power = film_.transmittance(crossing) * crossing.share;
     for (int c = 0; c < 3; ++c)
       add_scaled(power[c], stencil.weight.data(), basis.per_panel(), sum[c].data() + stencil.first);
   }
   return sum;
 }
 
-ExactTriple::Side ExactTriple::side(const std::vector<Passage>& passages) const {
-  if (material_.absorption_path == AbsorptionPath::sum) return {arriving(passages), {}, 0};
-  if (!film_.has_single_crossing()) return {{}, on_nodes(passages), 0};
-  const double cosine = passages.empty() ? 1 : passages.front().cosine;
-  return {passing(passages), towards_nodes(cosine), cosine};
+ExactTriple::Side ExactTriple::side(const std::vector<CrossingNode>& crossings) const {
+  if (material_.absorption_path == AbsorptionPath::sum) return {arriving(crossings), {}, 0};
+  if (!film_.has_single_crossing()) return {{}, on_nodes(crossings), 0};
+  const double cosine = crossings.empty() ? 1 : crossings.front().cosine;
+  return {passing(crossings), towards_nodes(cosine), cosine};
 }
 
 Rgb ExactTriple::rest(const Side& wo, const Side& wi) const {
@@ -124,9 +124,9 @@ Rgb ExactTriple::rest(const Side& wo, const Side& wi) const {
   return material_.radiance_scale() * base_albedo_ * (wo.power * wi.power) * (first + base_albedo_ * visits);
 }
 
-Rgb ExactTriple::rest_albedo(const std::vector<Passage>& passages) const {
-  if (material_.absorption_path == AbsorptionPath::sum) return gain_ * arriving(passages) * leaving_;
-  const Side in = side(passages);
+Rgb ExactTriple::rest_albedo(const std::vector<CrossingNode>& crossings) const {
+  if (material_.absorption_path == AbsorptionPath::sum) return gain_ * arriving(crossings) * leaving_;
+  const Side in = side(crossings);
   Rgb sum;
   for (int c = 0; c < 3; ++c) sum[c] = dot(in.on_nodes[c], exit_[c]);
   return film_.has_single_crossing() ? base_albedo_ * in.power * sum : sum;
@@ -164,11 +164,11 @@ std::vector<Rgb> ExactRest::rest(std::span<const Vec3> wo, const Vec3& wi) const
   std::vector<Rgb> values(wo.size());
   if (wi.z <= 0) return values;
   std::vector<ExactTriple::Side> sides;
-  const auto in = passages(wi);
+  const auto in = crossings(wi);
   for (const ExactTriple& triple : triples_) sides.push_back(triple.side(in));
   for (std::size_t k = 0; k < wo.size(); ++k) {
     if (wo[k].z <= 0) continue;
-    const auto out = passages(wo[k]);
+    const auto out = crossings(wo[k]);
     auto side = sides.begin();
     values[k] = fold([&](const ExactTriple& triple) { return triple.rest(triple.side(out), *side++); });
   }
@@ -177,18 +177,18 @@ std::vector<Rgb> ExactRest::rest(std::span<const Vec3> wo, const Vec3& wi) const
 
 Rgb ExactRest::albedo(const Vec3& w) const {
   if (w.z <= 0) return {};
-  const auto in = passages(w);
+  const auto in = crossings(w);
   return fold([&](const ExactTriple& triple) { return triple.first_albedo(w) + triple.rest_albedo(in); });
 }
 
 Rgb ExactRest::rest_albedo(const Vec3& w) const {
   if (w.z <= 0) return {};
-  const auto in = passages(w);
+  const auto in = crossings(w);
   return fold([&](const ExactTriple& triple) { return triple.rest_albedo(in); });
 }
 
 std::vector<double> ExactRest::arriving(const Vec3& w) const {
-  const auto in = passages(w);
+  const auto in = crossings(w);
   return each([&](const ExactTriple& triple) { return triple.arriving(in); });
 }
 

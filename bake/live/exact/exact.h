@@ -11,21 +11,11 @@
 // reflection from below, g = f1 + v_i^T M v_o, M = B + B F B + ... = (1 - B F)^-1 B.
 //
 // Exact here means deterministic: no noise, the same bits each time, symmetric to rounding. What is left is
-// quadrature error; relative, found by refining every rule (some 900 random materials, n0 = 1, film up to
-// 1500 nm, tau up to 2, values above 1e-12):
-//   smooth film  4e-8 at most;
-//   rough film   1e-5 typically, 2e-4 at most, 3e-4 for n2 within 0.1 % of n0; 1e-3 for films of 20 um;
-//   rough film over a lower index (n2 < n0 <= 2)  1e-7 typically, 1e-3 at most (400 materials of its own);
-//   the nodes follow the directions refracted to grazing the base, and a film of lower index that light
-//   tunnels;
-//   anisotropic film, either roughness from 0.004  the same: 3e-4 at most, 1e-3 over a lower index (300).
-// Values below 1e-20, deep in the pigment at grazing angles, may lose all relative precision.
+// quadrature error; docs/live.md lists it, and tests hold it. The nodes
+// follow the directions refracted to grazing the base, and a film of lower index that light tunnels. Values
+// below 1e-20, deep in the pigment at grazing angles, may lose all relative precision.
 //
-// Wavelengths are independent and worked through three at a time. Times on one core for 3 wavelengths (20):
-// construction 2 ms smooth, 15 ms rough (15, 100); rest() smooth 0.4 us (2.5) for sum, 15 us (130) for
-// product, rough 0.5 ms (1.4 to 2.3), half of it a wo if there are many; anisotropic twice that. Thick films
-// take more nodes: at 100 um construction takes 100 ms rough and rest() 0.1 s. Const members are safe to
-// share.
+// Wavelengths are independent and worked through three at a time. Const members are safe to share.
 #pragma once
 
 #include <span>
@@ -44,7 +34,7 @@ class ExactTriple {
               const ExactResolution& resolution);
 
   // Ways to the base, the same for all triples of no shorter wavelengths.
-  std::vector<Passage> passages(const Vec3& w) const { return film_.passages(w); }
+  std::vector<CrossingNode> crossings(const Vec3& w) const { return film_.crossings(w); }
 
   // What rest() needs of a direction with w.z > 0, and what takes the time.
   struct Side {
@@ -52,13 +42,13 @@ class ExactTriple {
     std::array<Vector, 3> on_nodes;  // v / kd there,
     double cosine = 0;               // below the film; product through facets: p_t at nodes alone
   };
-  Side side(const std::vector<Passage>& passages) const;
+  Side side(const std::vector<CrossingNode>& crossings) const;
   Rgb rest(const Side& wo, const Side& wi) const;
   Rgb first_albedo(const Vec3& w) const { return film_.first_albedo(w); }
-  Rgb rest_albedo(const std::vector<Passage>& passages) const;
+  Rgb rest_albedo(const std::vector<CrossingNode>& crossings) const;
 
   // Path "sum" alone: rest = gain() A(wo) A(wi) with A = arriving().
-  Rgb arriving(const std::vector<Passage>& passages) const;
+  Rgb arriving(const std::vector<CrossingNode>& crossings) const;
   Rgb gain() const { return gain_ * material_.radiance_scale(); }
 
  private:
@@ -70,8 +60,8 @@ class ExactTriple {
   Rgb attenuation(double exponent) const;
   Rgb attenuated(double cos_i, double cos_o) const;
   Vectors towards_nodes(double cosine) const;
-  Vectors on_nodes(const std::vector<Passage>& passages) const;
-  Rgb passing(const std::vector<Passage>& passages) const;
+  Vectors on_nodes(const std::vector<CrossingNode>& crossings) const;
+  Rgb passing(const std::vector<CrossingNode>& crossings) const;
 
   Material material_;
   Rgb base_albedo_, absorption_;
@@ -112,7 +102,7 @@ class ExactRest {
   std::vector<double> each(F of_triple) const;
   template <class F>
   Rgb fold(F of_triple) const;
-  std::vector<Passage> passages(const Vec3& w) const { return triples_[finest_].passages(w); }
+  std::vector<CrossingNode> crossings(const Vec3& w) const { return triples_[finest_].crossings(w); }
 
   Wavelengths wavelengths_;
   std::vector<ExactTriple> triples_;  // the last one filled up with its last wavelength

@@ -3,21 +3,12 @@
 // There the rest is exactly of rank one at each wavelength (exact.h),
 //     rest(wo, wi) = fold(gain_k A_k(wo) A_k(wi)),
 // so that functions of one cosine are all there is: A_k, and the film's reflectance folded to RGB. Both are
-// kept as PanelCurve. Relative errors of the rest against ExactRest, for values above 1e-14:
-//   smooth film  1e-6, of 100 um too;
-//   rough film   1e-5 for cosines above 0.05; below, 2e-4, which is the error of ExactRest itself there.
-// The reflectance of the first surface has an error of 1e-5 relative or 1e-7 absolute.
+// kept as PanelCurve, with errors about as small as those of ExactRest (docs/live.md).
 //
 // sample mixes visible normals (a smooth film: its mirror direction, a Dirac) and, uniform in azimuth, a
 // density over cos^2 in proportion to A_k, averaged over the wavelengths by the power they send out; pdf is
 // the exact density of that mixture. Directions that visible normals send below the horizon are empty.
 //
-// Times on one core, smooth (rough):
-//   wavelengths        1            3            20
-//   eval           18 (47) ns   34 (61) ns   69 (98) ns
-//   sample         80 (135)     91 (148)     124 (175)
-//   pdf            6 (16)       6 (16)       6 (16)
-//   construction   0.4 (40) ms  0.4 (40) ms  2 (300 to 500) ms; rough and n0 > 1: seconds, by its many panels
 // Const members are safe to share.
 #pragma once
 

@@ -88,8 +88,8 @@ void FilmIntegrals::visit_visible(const Vec3& w, bool only_mirrored, F visit) co
   });
 }
 
-std::vector<Passage> FilmIntegrals::passages(const Vec3& w) const {
-  std::vector<Passage> result;
+std::vector<CrossingNode> FilmIntegrals::crossings(const Vec3& w) const {
+  std::vector<CrossingNode> result;
   const auto add = [&](const Vec3& from, const Vec3& normal, double weight) {
     const double cosine = std::clamp(dot(from, normal), 0.0, 1.0);
     if (const auto inside = geometry_.cross(from, normal))
@@ -126,7 +126,7 @@ std::vector<Rgb> FilmIntegrals::moments(Event event, double low, double high) co
       const double t = (part + fine_.node[i]) / parts;
       const double cosine = lerp(smooth_step(t), low, high);
       const FilmPower power = airy(film, cosine, wavelengths_nm_);
-      const Rgb value = (event == Event::passage ? power.transmittance : power.reflectance) *
+      const Rgb value = (event == Event::crossing ? power.transmittance : power.reflectance) *
                         (cosine * (high - low) * smooth_step_slope(t) * fine_.weight[i] / parts);
       const auto weights = cosine_panel_.at(t);
       for (int j = 0; j < cosine_panel_.size(); ++j) result[j] += value * weights[j];
@@ -138,7 +138,7 @@ std::vector<Rgb> FilmIntegrals::moments(Event event, double low, double high) co
 // between.
 double FilmIntegrals::shadowed(Event event, const std::vector<FacetTurns::Turn>& turns, const Vec3& w,
                                const Vec3& partner) const {
-  const bool alone = event == Event::passage && material_.transmission == Transmission::straight;
+  const bool alone = event == Event::crossing && material_.transmission == Transmission::straight;
   return turns_.masked(turns, w, alone ? nullptr : &partner);
 }
 
@@ -189,7 +189,7 @@ void FilmIntegrals::visit_facets(Event event, F visit) const {
     std::sort(edges.begin(), edges.end());
     for (std::size_t p = 0; p + 1 < edges.size(); ++p) {
       if (edges[p + 1] - edges[p] < 1e-12) continue;
-      if (event == Event::passage && edges[p + 1] <= critical) continue;
+      if (event == Event::crossing && edges[p + 1] <= critical) continue;
       const auto weights = moments(event, edges[p], edges[p + 1]);
       for (int j = 0; j < cosine_panel_.size(); ++j)
         visit_azimuths(event, theta, turns,
@@ -249,7 +249,7 @@ std::array<Vector, 3> FilmIntegrals::exit(const std::array<Matrix, 3>& reflectio
     return sum;
   }
   sum.fill(Vector(basis_.size()));
-  visit_facets(Event::passage, [&](const Meeting& m) {
+  visit_facets(Event::crossing, [&](const Meeting& m) {
     const auto inside = basis_.at(m.partner);
     for (int channel = 0; channel < 3; ++channel)
       add_scaled(m.weight[channel] * material_.radiance_scale(), inside.weight.data(), basis_.per_panel(),

@@ -3,7 +3,7 @@
 // Over a base without azimuth light below the film is known by its polar cosine alone: an anisotropic film
 // acts on it by the mean over the azimuth of what comes from below, which is that over all turns of its
 // facets. A function of the cosine is known by its values at the nodes of a CosineBasis, so the film is a
-// matrix (reflection from below) and vectors (passages). Powers are per wavelength, three at once.
+// matrix (reflection from below) and vectors (crossings). Powers are per wavelength, three at once.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace sunbeam {
 
-// Numbers of nodes. The defaults give the errors that exact.h states; tests double them.
+// Numbers of nodes. The defaults give the errors that docs/live.md states; tests double them.
 struct ExactResolution {
   int per_panel = 10;  // of a panel of the cosine basis, at most 24
   int normals = 24;    // facets: polar angle of the normal,
@@ -27,7 +27,7 @@ struct ExactResolution {
 };
 
 // A way through the film to the base, whatever the wavelength.
-struct Passage {
+struct CrossingNode {
   double facet_cosine;  // outside
   double cosine;        // below, as the light arrives at the base
   double share;         // of the power if the film lets all through
@@ -38,13 +38,13 @@ class FilmIntegrals {
   FilmIntegrals(const Material& material, const Rgb& wavelengths_nm, const ExactResolution& resolution);
 
   const CosineBasis& basis() const { return basis_; }
-  // False if facets bend light, so that passages() is a quadrature over many cosines.
+  // False if facets bend light, so that crossings() is a quadrature over many cosines.
   bool has_single_crossing() const { return !geometry_.has_glossy_crossing(); }
 
   // Ways of light along w, for all wavelengths not shorter than those of this object; none under total
   // reflection. p_t(w -> m) dm is share times transmittance() at m.z = cosine.
-  std::vector<Passage> passages(const Vec3& w) const;
-  Rgb transmittance(const Passage& passage) const { return power(passage.facet_cosine).transmittance; }
+  std::vector<CrossingNode> crossings(const Vec3& w) const;
+  Rgb transmittance(const CrossingNode& crossing) const { return power(crossing.facet_cosine).transmittance; }
 
   // Directional albedo of the first surface, a smooth film's Dirac included.
   Rgb first_albedo(const Vec3& w) const;
@@ -62,11 +62,11 @@ class FilmIntegrals {
     double cosine, partner;
     Rgb weight;
   };
-  enum class Event { reflection_below, passage };
+  enum class Event { reflection_below, crossing };
 
   // From outside.
   FilmPower power(double facet_cosine) const { return airy(film_, facet_cosine, wavelengths_nm_); }
-  const ThinFilm& film_of(Event event) const { return event == Event::passage ? film_ : film_below_; }
+  const ThinFilm& film_of(Event event) const { return event == Event::crossing ? film_ : film_below_; }
   double phase(const ThinFilm& film, double cosine) const;
   int visible_nodes() const;
   int oscillation_panels(const ThinFilm& film, double low, double high) const;

@@ -1,5 +1,5 @@
-// Means over all turns of a facet about the macro normal, directions turned along with it: all that a film
-// is to light whose azimuth nobody knows.
+// GGX facets (sunbeam/detail/ggx.h) in means over all turns of a facet about the macro normal, directions
+// turned along with it: all that a film is to light whose azimuth nobody knows.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// A rough film's facets as a medium that light wanders in: Smith's microsurface after Heitz et al. 2016,
-// position-free as in Bitterli and d'Eon 2022.
+// GGX facets (sunbeam/detail/ggx.h) as a medium that light wanders in: Smith's microsurface after Heitz et
+// al. 2016, position-free as in Bitterli and d'Eon 2022.
 //
 // Of the height only C, the share of the microsurface below it, matters. With depth = -ln C (0 above
 // everything) a microsurface is a homogeneous half-space: light travelling along x meets facets at

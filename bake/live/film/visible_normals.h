@@ -1,5 +1,5 @@
-// The microfacet normals visible from one direction, in coordinates for a quadrature: what light does there
-// changes smoothly between the edges that are given.
+// The GGX normals (sunbeam/detail/ggx.h) visible from one direction, in coordinates for a quadrature: what
+// light does there changes smoothly between the edges that are given.
 //
 // The normals visible from w, by stretching the surface to roughness 1, where their density over half the
 // angle between w and its mirror image is uniform (Heitz 2018): polar angle about the stretched w, azimuth

@@ -9,14 +9,14 @@
 
 namespace sunbeam::walk {
 
-class Guide {
+class BaseGuide {
  public:
   static constexpr int kBins = 64;
   static constexpr double kCosineShare = 0.1;
 
   // From the importance at the midpoints of equal bins of t, none negative. A share of the samples stays
   // cos-weighted, which bounds 1 / density.
-  explicit Guide(const std::array<double, kBins>& importance);
+  explicit BaseGuide(const std::array<double, kBins>& importance);
 
   template <class V>
   struct Sample {
@@ -36,14 +36,14 @@ class Guide {
 };
 
 template <>
-SUNBEAM_INLINE Guide::Sample<double> Guide::sample(const double& u) const {
+SUNBEAM_INLINE BaseGuide::Sample<double> BaseGuide::sample(const double& u) const {
   const int bin = static_cast<int>(u * kBins);
   const double width = edge_[bin + 1] - edge_[bin];
   return {max(edge_[bin] + (u * kBins - bin) * width, kLeastSquare), width * kBins};
 }
 
 template <class V>
-SUNBEAM_INLINE Guide::Sample<V> Guide::sample(const V& u) const {
+SUNBEAM_INLINE BaseGuide::Sample<V> BaseGuide::sample(const V& u) const {
   double at[kLanes];
   (u * V(kBins)).store(at);
   const auto bin = [&](int lane) { return static_cast<int>(at[lane]); };
@@ -52,5 +52,15 @@ SUNBEAM_INLINE Guide::Sample<V> Guide::sample(const V& u) const {
   const V within = V::generate([&](int lane) { return at[lane] - bin(lane); });
   return {max(low + within * width, V(kLeastSquare)), width * V(kBins)};
 }
+
+struct Layers;
+
+// What a few walks between film and base tell about them; its noise is harmless, for it only steers choices.
+struct BaseForecast {
+  BaseGuide going_on;  // for walks that go on: towards what the film throws back and the pigment lets through
+  BaseGuide leaving;   // for walks that may leave: towards what gets out, now or later
+  double worth;        // share of the light that enters steeply that leaves again, mean over wavelengths
+};
+BaseForecast forecast_base(const Layers& layers);
 
 }  // namespace sunbeam::walk

@@ -1,15 +1,17 @@
-// The bidirectional estimator of the rest (Guo, Hasan, Zhao 2018, Sec. 5), for a packet of walks at once.
+// The bidirectional estimator of the rest (Guo, Hasan, Zhao 2018, Sec. 5), for a packet of walks at once. It
+// is the cross-check of the unidirectional one, which is the faster of the two for these materials.
 //
 // A walk from wo, the camera's, is kept for its first kCameraVisits visits of the base; one from wi, the
 // light's, goes on until roulette ends it, and each of its vertices connects to all of the camera's:
 //   at the base     light arrived along m_s, camera arrived along n_t: f1(m_s, n_t);
 //   at the film     light left the base along u_s, camera along v_t: the lower lobe (rough films);
-//   on the way out  light left the base along u_s: its passage to wo (glossy crossings);
-//   on the way in   camera left the base along v_t: its passage to wi (glossy crossings).
+//   on the way out  light left the base along u_s: its crossing to wo (glossy crossings);
+//   on the way in   camera left the base along v_t: its crossing to wi (glossy crossings).
 // A path with k visits of the base can be made in up to 2 k + 1 of these ways. The balance heuristic weighs
 // them: shifting the connection by one vertex multiplies the density by (density of the direction between as
 // the other walk draws it) / (as this one does), so the sum over all shifts is a recursion along each walk
-// (the partial sums of Georgiev et al. 2012). Names as below, p(a | b) a density of a given b:
+// (the partial sums of Georgiev et al. 2012). In the code X is `down_sum`, for light on its way down, and U
+// is `up_sum`; p(a | b) is the density of a given b:
 //   X_s = [film + p(u_{s-1} | m_s) U_{s-1}] / p(m_s),    film = 1 if that connection exists, else 0,
 //   U_s = [1 + p(m_s | u_s) X_s] / p(u_s),
 //   weight = 1 / (1 + light's sum + camera's sum).
@@ -53,7 +55,9 @@ class BidirectionalWalk {
   // Over shifts towards the light, by the visits the camera has left.
   using Sums = std::array<V, kCameraVisits + 1>;
 
-  SUNBEAM_INLINE static V base_density(const V& cosine) { return V(Guide::kCosineShare * kInvPi) * cosine; }
+  SUNBEAM_INLINE static V base_density(const V& cosine) {
+    return V(BaseGuide::kCosineShare * kInvPi) * cosine;
+  }
 
   // One step of the recursions: U from X over the base, X from U over the film.
   SUNBEAM_INLINE static V sum_after_base(const V& arrived, const V& down_sum, const V& up) {
@@ -124,7 +128,7 @@ class BidirectionalWalk {
 
   SUNBEAM_INLINE void connect_at_film(const V& up, const Spectrum<V>& power, const V& light_sum,
                                       const CameraVertex& camera, Rng& rng, Spectrum<V>& estimate) const {
-    const auto lobe = steps_.events().mirror_below(up, camera.up, rng);
+    const auto lobe = steps_.events().mirror_towards(up, camera.up, rng);
     const V factor = lobe.value * V(layers_.radiance_scale) /
                      (V(1) + lobe.reverse * light_sum + lobe.forward * camera.up_sum);
     steps_.events().reflectances_below(
@@ -134,7 +138,7 @@ class BidirectionalWalk {
   // Out along w; `sum` over shifts away from w. The lobe holds the radiance scale.
   SUNBEAM_INLINE void leave(const V& up, const Spectrum<V>& power, double w, const V& sum, Rng& rng,
                             Spectrum<V>& estimate) const {
-    const auto lobe = steps_.events().exit(up, V(w), rng);
+    const auto lobe = steps_.events().cross_towards(up, V(w), rng);
     const V factor = lobe.value / (V(1) + lobe.reverse * sum);
     steps_.events().transmittances(lobe.film,
                                    [&](int j, const V& t) { estimate[j] += power[j] * t * factor; });

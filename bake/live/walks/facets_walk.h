@@ -44,10 +44,10 @@ class FacetsWalk {
 
  private:
   // Roulette starts when less than this is still to come: for walks over the base as a share of all that
-  // comes after the first visit, for single passages as a share of what enters. Where a forecast stands in
+  // comes after the first visit, for single crossings as a share of what enters. Where a forecast stands in
   // for what ends, and where none does.
-  static constexpr double kForecastWalkEnd = 0.5, kForecastPassageEnd = 0.8;
-  static constexpr double kWalkEnd = 0.2, kPassageEnd = 0.05;
+  static constexpr double kForecastWalkEnd = 0.5, kForecastCrossingEnd = 0.8;
+  static constexpr double kWalkEnd = 0.2, kCrossingEnd = 0.05;
   static constexpr double kNothing = 0.02;  // of what enters
 
   // Between two facets or about to meet one, in the frame of a side: cosines > 0 lead away from the facets.
@@ -90,7 +90,7 @@ class FacetsWalk {
     Arrival<V> exit[kMostExits];
     Spectrum<V> sum[kMostExits];
     for (int k = 0; k < exits; ++k) {
-      prepare_exit(wo[k], kPassageEnd, rng, exit[k], [](const Flight&, double) {});
+      prepare_exit(wo[k], kCrossingEnd, rng, exit[k], [](const Flight&, double) {});
       for (int j = 0; j < layers_.count; ++j) sum[k][j] = V(0);
     }
     const auto connect = [&](const V& cosine, const Spectrum<V>& power, const auto& is_here) {
@@ -153,11 +153,11 @@ class FacetsWalk {
     }
   }
 
-  // What the base's kd / pi and the passage from outside along wo make of light, the mean over all lanes.
+  // What the base's kd / pi and the crossing from outside along wo make of light, the mean over all lanes.
   SUNBEAM_INLINE void leave(double wo, Rng& rng, std::array<double, kMostWavelengths>& mean) const {
     Arrival<V> exit;
     std::array<double, kMostWavelengths> ended{};
-    prepare_exit(wo, kForecastPassageEnd, rng, exit, [&](const Flight& light, double share) {
+    prepare_exit(wo, kForecastCrossingEnd, rng, exit, [&](const Flight& light, double share) {
       for (int j = 0; j < layers_.count; ++j) ended[j] += mean_of_lanes(light.power[j]) * share;
     });
     const std::array<double, kMostWavelengths> attenuation = passing(wo);
@@ -197,7 +197,7 @@ class FacetsWalk {
     events_.attenuate(V(1) / up.cosine, light.power);
     for (int j = 0; j < layers_.count; ++j) light.total += light.power[j];
     fly(V(1) - Uniform<V>::draw(rng), light);
-    come_out(1, kPassageEnd, light, arrival, rng, [](const Flight&, double) {});
+    come_out(1, kCrossingEnd, light, arrival, rng, [](const Flight&, double) {});
   }
 
   // From facet to facet until every lane has come out below or roulette has ended the others; forecast(light,
@@ -253,67 +253,94 @@ class FacetsWalk {
     return -height * facets_.area(travel) / max(travel, V(1e-12));
   }
 
-  // One facet, from where a straight passage leads to the cosine `unbent` below.
+  // Where light can go on from a facet, mirrored or passing, and the power of either.
+  struct Ways {
+    V mirrored, passed, passed_height;  // travel, and height where it changes
+    V mirrors, passes;
+  };
+  // The way that was taken: 1 or 0, the power before and after the choice, both times the same factor.
+  struct Turn {
+    V is_mirrored, goes_out;
+    V whole, chosen;
+  };
+
+  // One facet, from where a straight crossing leads to the cosine `unbent` below.
   SUNBEAM_INLINE Outcome meet(double unbent, Flight& light, Rng& rng) const {
-    const V w = -light.travel, one(1), half(0.5), zero(0);
-    const auto was_outside = light.is_outside > half;
-    const auto h = facets_.sample(w, facets_.root(w), rng);
-    const V cosine = max(h.cosine, zero);
-    const V ratio = select(was_outside, V(layers_.index_ratio), V(1 / layers_.index_ratio));
-    const V far = sqrt(max(one - squared(ratio) * (one - squared(cosine)), zero));
-
+    const V one(1), half(0.5), zero(0);
     Spectrum<V> r;
-    V mirrors(0);  // power
-    const FilmLanes<V> film(layers_.film, layers_.phases, select(was_outside, cosine, far));
-    film.reflectances([&](int j, const V& value) {
-      r[j] = value;
-      mirrors += light.power[j] * value;
-    });
-    V passes = (light.total - mirrors) * film.through();
-
-    const V mirrored = min(V(2) * cosine * h.cos_h - w, one);
-    V passed = min(ratio * w + (far - ratio * cosine) * h.cos_h, one), passed_height = light.height;
-    if (layers_.straight) {
-      passes = select(was_outside, passes, zero);
-      passed = V(unbent);
-    } else {
-      passed_height = log_of_share(one - exp_negative(light.height));
-    }
-
-    // To the outside or the inside? By power, and outside about by the chance x / (1 + x) to stay there.
-    const V out = select(was_outside, mirrored, passed);
-    const V x =
-        select(out > zero, facets_ahead(out, select(was_outside, light.height, passed_height)), V(1e12));
-    const V outside = select(was_outside, mirrors, passes) * x;
-    const V whole = outside + select(was_outside, passes, mirrors) * (one + x);
-    const auto goes_out = outside > Uniform<V>::draw(rng) * whole;
-    light.is_outside = select(goes_out, one, zero);
-    const auto is_mirrored = select(was_outside, light.is_outside, one - light.is_outside) > half;
-    light.travel = select(is_mirrored, mirrored, passed);
-    light.height = select(is_mirrored, light.height, passed_height);
+    const Ways ways = ways_on(unbent, light, r, rng);
+    const Turn turn = take_turn(ways, light, rng);
+    const auto is_mirrored = turn.is_mirrored > half, goes_out = turn.goes_out > half;
 
     const V ahead = facets_ahead(light.travel, light.height);
     V escapes = select(light.travel > zero, exp_negative(-ahead), zero);
     if (layers_.straight) escapes = select(is_mirrored, escapes, one);
     const V stays = select(goes_out, one - escapes, one);
-    const V chosen = select(is_mirrored, mirrors, passes) * select(goes_out, x, one + x);
-    const V factor = whole * stays / max(chosen, V(1e-300));
-    const V mirror_factor = select(is_mirrored, factor, -factor),
-            pass_factor = select(is_mirrored, zero, factor);
-    light.total = V(0);
-    for (int j = 0; j < layers_.count; ++j) {
-      light.power[j] *= pass_factor + mirror_factor * r[j];
-      light.total += light.power[j];
-    }
+    const V factor = turn.whole * stays / max(turn.chosen, V(1e-300));
+    weigh(select(is_mirrored, zero, factor), select(is_mirrored, factor, -factor), r, light);
 
     const V u = Uniform<V>::draw(rng);
     const V share = one - u * stays;
     return {select(escapes >= share, one - light.is_outside, zero), share};
   }
 
+  // Draws the facet; r becomes its reflectances.
+  SUNBEAM_INLINE Ways ways_on(double unbent, const Flight& light, Spectrum<V>& r, Rng& rng) const {
+    const V w = -light.travel, one(1), zero(0);
+    const auto was_outside = light.is_outside > V(0.5);
+    const auto h = facets_.sample(w, facets_.root(w), rng);
+    const V cosine = max(h.cosine, zero);
+    const V ratio = select(was_outside, V(layers_.index_ratio), V(1 / layers_.index_ratio));
+    const V far = sqrt(max(one - squared(ratio) * (one - squared(cosine)), zero));
+
+    V mirrors(0);
+    const FilmPackets<V> film(layers_.film, layers_.phases, select(was_outside, cosine, far));
+    film.reflectances([&](int j, const V& value) {
+      r[j] = value;
+      mirrors += light.power[j] * value;
+    });
+    Ways ways{min(V(2) * cosine * h.cos_h - w, one), min(ratio * w + (far - ratio * cosine) * h.cos_h, one),
+              light.height, mirrors, (light.total - mirrors) * film.through()};
+    if (layers_.straight) {
+      ways.passes = select(was_outside, ways.passes, zero);
+      ways.passed = V(unbent);
+    } else {
+      ways.passed_height = log_of_share(one - exp_negative(light.height));
+    }
+    return ways;
+  }
+
+  // To the outside or the inside? By power, and outside about by the chance x / (1 + x) to stay there.
+  SUNBEAM_INLINE Turn take_turn(const Ways& ways, Flight& light, Rng& rng) const {
+    const V one(1), half(0.5), zero(0);
+    const auto was_outside = light.is_outside > half;
+    const V out = select(was_outside, ways.mirrored, ways.passed);
+    const V x =
+        select(out > zero, facets_ahead(out, select(was_outside, light.height, ways.passed_height)), V(1e12));
+    const V outside = select(was_outside, ways.mirrors, ways.passes) * x;
+    const V whole = outside + select(was_outside, ways.passes, ways.mirrors) * (one + x);
+    const auto goes_out = outside > Uniform<V>::draw(rng) * whole;
+    light.is_outside = select(goes_out, one, zero);
+    const V mirrored = select(was_outside, light.is_outside, one - light.is_outside);
+    const auto is_mirrored = mirrored > half;
+    light.travel = select(is_mirrored, ways.mirrored, ways.passed);
+    light.height = select(is_mirrored, light.height, ways.passed_height);
+    return {mirrored, light.is_outside, whole,
+            select(is_mirrored, ways.mirrors, ways.passes) * select(goes_out, x, one + x)};
+  }
+
+  // Multiplies the power at reflectance r by fixed + slope r.
+  SUNBEAM_INLINE void weigh(const V& fixed, const V& slope, const Spectrum<V>& r, Flight& light) const {
+    light.total = V(0);
+    for (int j = 0; j < layers_.count; ++j) {
+      light.power[j] *= fixed + slope * r[j];
+      light.total += light.power[j];
+    }
+  }
+
   const Layers& layers_;
   Events<V> events_;
-  Facets<V> facets_;
+  FacetPackets<V> facets_;
 };
 
 }  // namespace sunbeam::walk

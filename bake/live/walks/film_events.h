@@ -14,11 +14,12 @@ SUNBEAM_INLINE V sine_of(const V& cosine) {
   return sqrt(max(V(0), V(1) - squared(cosine)));
 }
 
-// GGX with Smith masking of one roughness (sunbeam/detail/ggx.h), in polar cosines.
+// GGX with Smith masking (sunbeam/detail/ggx.h has the equations) for the walks: isotropic, double precision,
+// lanes are directions, known by their polar cosines.
 template <class V>
-class Facets {
+class FacetPackets {
  public:
-  SUNBEAM_INLINE explicit Facets(double alpha) : alpha2_(alpha * alpha), alpha_(alpha) {}
+  SUNBEAM_INLINE explicit FacetPackets(double alpha) : alpha2_(alpha * alpha), alpha_(alpha) {}
 
   // cosine (1 + 2 Lambda).
   SUNBEAM_INLINE V root(const V& cosine) const { return sqrt(squared(cosine) * V(1 - alpha2_) + V(alpha2_)); }
@@ -74,7 +75,7 @@ using Spectrum = std::array<V, kMostWavelengths>;
 
 // Entering along w, or by reciprocity leaving along it.
 template <class V>
-struct Passage {
+struct Crossing {
   V cosine;   // inside
   V density;  // of the inside direction, 1/sr; only with a glossy crossing
   V weight;   // without the film's transmittance
@@ -92,7 +93,7 @@ struct Reflection {
 template <class V>
 struct Connection {
   V value;    // 1/sr, without the film's power
-  V film;     // cosine at which the film is met: a passage from outside, a reflection from below
+  V film;     // cosine at which the film is met: a crossing from outside, a reflection from below
   V forward;  // density of the second direction given the first, as a walk draws it
   V reverse;  // and of the first given the second
 };
@@ -102,7 +103,7 @@ class Events {
  public:
   SUNBEAM_INLINE explicit Events(const Layers& layers) : layers_(layers), facets_(layers.alpha) {}
 
-  using Normal = typename Facets<V>::Normal;
+  using Normal = typename FacetPackets<V>::Normal;
 
   // A facet seen from w; the macro normal of a smooth film.
   SUNBEAM_INLINE Normal meet(const V& w, Rng& rng) const {
@@ -110,8 +111,8 @@ class Events {
     return facets_.sample(w, facets_.root(w), rng);
   }
 
-  // Through it, from outside to inside with far_per_near = n0 / n2, or the other way round.
-  SUNBEAM_INLINE Passage<V> cross(const V& w, const Normal& h, double far_per_near) const {
+  // Through a facet, from outside to inside with far_per_near = n0 / n2, or the other way round.
+  SUNBEAM_INLINE Crossing<V> cross(const V& w, const Normal& h, double far_per_near) const {
     if (!layers_.bends) return {w, V(1), unbent_shadowing(w), h.cosine};
     const V eta(far_per_near);
     const V far2 = V(1) - squared(eta) * (V(1) - squared(h.cosine));
@@ -127,7 +128,7 @@ class Events {
             select(through, facets_.g2_over_g1(w, root_w, m, facets_.root(m)), V(0)), h.cosine};
   }
 
-  SUNBEAM_INLINE Passage<V> pass(const V& w, Rng& rng) const {
+  SUNBEAM_INLINE Crossing<V> cross(const V& w, Rng& rng) const {
     return cross(w, meet(w, rng), layers_.index_ratio);
   }
 
@@ -149,8 +150,8 @@ class Events {
 
   SUNBEAM_INLINE Reflection<V> reflect_below(const V& u, Rng& rng) const { return mirror(u, meet(u, rng)); }
 
-  // f_t(m -> w), Walter's function; forward is unused, reverse the density of m when pass() draws it for w.
-  SUNBEAM_INLINE Connection<V> exit(const V& m, const V& w, Rng& rng) const {
+  // f_t(m -> w), Walter's function; forward is unused, reverse the density of m when cross() draws it for w.
+  SUNBEAM_INLINE Connection<V> cross_towards(const V& m, const V& w, Rng& rng) const {
     const V eta(layers_.index_ratio);
     const V wm = dot(m, w, rng);
     const V length2 = squared(eta) + V(1) - V(2) * eta * wm;
@@ -166,7 +167,7 @@ class Events {
   }
 
   // f_r(u -> m) of the film's lower side.
-  SUNBEAM_INLINE Connection<V> mirror_below(const V& u, const V& m, Rng& rng) const {
+  SUNBEAM_INLINE Connection<V> mirror_towards(const V& u, const V& m, Rng& rng) const {
     const V um = dot(u, m, rng);
     const V length = sqrt(max(V(2) + V(2) * um, V(1e-30)));
     const V quarter_d = V(0.25) * facets_.d(min((u + m) / length, V(1)));
@@ -177,11 +178,11 @@ class Events {
   // Calls visit(j, T) or visit(j, R) for every wavelength.
   template <class F>
   SUNBEAM_INLINE void transmittances(const V& film_cosine, F visit) const {
-    FilmLanes<V>(layers_.film, layers_.phases, film_cosine).transmittances(visit);
+    FilmPackets<V>(layers_.film, layers_.phases, film_cosine).transmittances(visit);
   }
   template <class F>
   SUNBEAM_INLINE void reflectances_below(const V& film_cosine, F visit) const {
-    FilmLanes<V>(layers_.film_below, layers_.phases, film_cosine).reflectances(visit);
+    FilmPackets<V>(layers_.film_below, layers_.phases, film_cosine).reflectances(visit);
   }
 
   // From the base up, as the guide has it.
@@ -189,12 +190,13 @@ class Events {
     V cosine;
     V share;  // cos / (pi density)
   };
-  SUNBEAM_INLINE Leaving leave_base(const Guide& guide, Rng& rng) const {
+  SUNBEAM_INLINE Leaving leave_base(const BaseGuide& guide, Rng& rng) const {
     const auto at = guide.sample(Uniform<V>::draw(rng));
     return {sqrt(at.square), at.per_density};
   }
 
-  // Multiplies by exp(-tau x).
+  // Multiplies by exp(-tau x): Beer and Lambert. With "sum" a walk pays for each leg, x = 1 / cosine; with
+  // "product" for each visit of the base, x = 1 / (cosine down * cosine up), once both are known.
   SUNBEAM_INLINE void attenuate(const V& x, Spectrum<V>& value) const {
     if (layers_.same_tau) {
       if (layers_.least_tau == 0) return;
@@ -219,7 +221,7 @@ class Events {
   }
 
   const Layers& layers_;
-  Facets<V> facets_;
+  FacetPackets<V> facets_;
 };
 
 }  // namespace sunbeam::walk

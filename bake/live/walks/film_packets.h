@@ -1,10 +1,8 @@
-// The Airy film of bake/optics/thin_film.h for a packet of directions at each of many wavelengths.
+// Airy's powers (bake/optics/thin_film.h has the equations and their letters) for the walks: double
+// precision, lanes are directions, one wavelength after the other.
 //
-// With C^2, S^2 = cos^2, sin^2(k c1), both from cos(phi), phi = 2 k c1, the powers of one polarisation are
-//     R = [(q0 - q2)^2 C^2 + (b - d)^2 S^2 / c1^2] / D,   T = 4 q0 q2 / D,
-//     D =  (q0 + q2)^2 C^2 + (b + d)^2 S^2 / c1^2,
-// b = q0 q2 c1 / q1, d = q1 c1. All but phi is shared by the wavelengths. Where the wave is evanescent in the
-// film, C^2 and S^2 / c1^2 become 1 and tanh^2 / |c1|^2, and T is divided by cosh^2.
+// All but the phase is shared by the wavelengths: x and y follow from cos(phi), phi = 2 k c1, alone, and by a
+// recurrence where wavelengths have even phases.
 #pragma once
 
 #include <array>
@@ -43,10 +41,10 @@ struct FilmSide {
 };
 
 template <class V>
-class FilmLanes {
+class FilmPackets {
  public:
   // At cosines `c0` in the film's exterior; those <= 0 reflect everything.
-  SUNBEAM_INLINE FilmLanes(const FilmSide& film, const FilmPhases& phases, const V& c0) : phases_(phases) {
+  SUNBEAM_INLINE FilmPackets(const FilmSide& film, const FilmPhases& phases, const V& c0) : phases_(phases) {
     const V c2_squared = V(film.offset2) + squared(c0) * V(film.slope2);
     const auto through = (c2_squared > V(0)) & (c0 > V(0));
     through_ = select(through, V(1), V(0));
@@ -113,7 +111,7 @@ class FilmLanes {
     p = {squared(q0 + q2), squared(q0 - q2), V(0), V(0), V(2) * q0 * q2};
   }
 
-  // visit(j, power(C^2, S^2 / c1^2, 1 / cosh^2)) for each wavelength.
+  // Calls visit(j, power(x, y, 1 / cosh^2)) for each wavelength.
   template <class F, class Power>
   SUNBEAM_INLINE void each_phase(F& visit, Power power) const {
     const int count = phases_.count;

@@ -5,7 +5,7 @@ namespace sunbeam::walk {
 
 template <class Arch>
 SUNBEAM_FLATTEN void reflectances(const FilmSide& film, const FilmPhases& phases, double cosine, double* r) {
-  const FilmLanes<Batch<Arch>> lanes(film, phases, cosine);
+  const FilmPackets<Batch<Arch>> lanes(film, phases, cosine);
   for (int j = 0; j < phases.count; j += Arch::kWidth)
     lanes.reflectance_at(Batch<Arch>::load(&phases.k[j])).store(r + j);
 }

@@ -20,7 +20,7 @@ struct Layers {
   double alpha;         // 0: smooth
   double index_ratio;   // n0 / n2 if passing light bends, else 1
   bool bends;
-  bool straight;  // the passage has no shadowing
+  bool straight;  // the crossing has no shadowing
 
   int count;                                    // of wavelengths
   std::array<double, kMostWavelengths> albedo;  // of the base
@@ -34,8 +34,8 @@ struct Layers {
   // Forecast of the power that ever visits the base, for walks that end (facets_walk.h): of light that is
   // there, 1 / (1 - share that comes back), and of light on its way back.
   std::array<double, kMostWavelengths> visits{}, later_visits{};
-  Guide guide;         // for walks that go on: towards what the film throws back and the pigment lets through
-  Guide open_guide;    // for walks that may leave: towards what gets out, now or later
+  BaseGuide guide;       // BaseForecast::going_on
+  BaseGuide open_guide;  // BaseForecast::leaving
   double worth_below;  // of the light that enters the film, about what leaves again; at least kLeastWorth, 1
                        // if it scatters
 

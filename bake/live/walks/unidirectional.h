@@ -1,8 +1,8 @@
 // The unidirectional estimator of the rest, for a packet of walks at once (templates; see pfmc.h).
 //
-// Throughputs are powers per wavelength. At the base a walk that arrived along m connects to m', a passage
+// Throughputs are powers per wavelength. At the base a walk that arrived along m connects to m', a crossing
 // drawn from wo: f1(m, m') T(wo -> m'). That alone serves every film: f1 is bounded by kd / pi and the
-// passage's weight by 1. (Adding the walk's own way out through a rough film by multiple importance sampling
+// crossing's weight by 1. (Adding the walk's own way out through a rough film by multiple importance sampling
 // was measured: more time and, if anything, more noise; docs/live.md.)
 #pragma once
 
@@ -51,13 +51,13 @@ class Steps {
 
   const Events<V>& events() const { return events_; }
 
-  // The passage from outside along w.
-  SUNBEAM_INLINE Passage<V> enter(const V& w, Rng& rng, Arrival<V>& arrival) const {
-    const Passage<V> passage = events_.pass(w, rng);
-    arrival.cosine = passage.cosine;
-    events_.transmittances(passage.film,
-                           [&](int j, const V& t) { arrival.throughput[j] = t * passage.weight; });
-    return passage;
+  // The crossing from outside along w.
+  SUNBEAM_INLINE Crossing<V> enter(const V& w, Rng& rng, Arrival<V>& arrival) const {
+    const Crossing<V> crossing = events_.cross(w, rng);
+    arrival.cosine = crossing.cosine;
+    events_.transmittances(crossing.film,
+                           [&](int j, const V& t) { arrival.throughput[j] = t * crossing.weight; });
+    return crossing;
   }
 
   // With "sum" the pigment's share of one direction; with "product" it is known only with the other one.

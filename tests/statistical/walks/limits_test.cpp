@@ -144,7 +144,7 @@ TEST(Exact, BlackBaseHasNoRest) {
   }
 }
 
-// The half vector of a passage is 0/0 at n2 = n0: values and noise pass through it continuously. From n2 = 1
+// The half vector of a crossing is 0/0 at n2 = n0: values and noise pass through it continuously. From n2 = 1
 // to 1.0001 the physics moves by some 1e-4, to 1.01 by some per cent (the radiance factor alone by 2 %).
 TEST(Exact, RoughRefractionIsContinuousAtEqualIndices) {
   struct Step {

@@ -86,7 +86,7 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-// How far it is off: it knows neither the roughness of the passage nor later visits. The total variation was
+// How far it is off: it knows neither the roughness of the crossing nor later visits. The total variation was
 // 0.155 at most, with a spread of 0.003 over seeds: the bound is eight of that away, less than 1e-6 of false
 // alarm.
 TEST(MisPdf, TotalVariationIsBounded) {

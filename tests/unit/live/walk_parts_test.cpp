@@ -94,7 +94,7 @@ void expect_film(const Film& f, const std::vector<double>& nm, double cosine, do
   phases.is_bare = f.film.thickness_nm == 0;
   phases.is_even = nm.size() > 3;
   const FilmSide side(f.film);
-  const FilmLanes<V> lanes(side, phases, V(cosine));
+  const FilmPackets<V> lanes(side, phases, V(cosine));
   int visited = 0;
   lanes.reflectances([&](int j, const V& r) {
     EXPECT_NEAR(mean_of_lanes(r), airy(f.film, cosine, Rgb(nm[j])).reflectance.g, tolerance)
@@ -114,7 +114,7 @@ std::vector<double> evenly_spaced_in_frequency(int count) {
   return nm;
 }
 
-TEST(FilmLanes, AgreeWithAiry) {
+TEST(FilmPackets, AgreeWithAiry) {
   for (const Film& f : kFilms)
     for (const double cosine : {0.0, 1e-6, 0.05, 0.3, 0.62, 0.7453, 0.7454, 0.746, 0.9, 1.0}) {
       expect_film<Lanes>(f, {650, 510, 475}, cosine, 1e-11);
@@ -123,14 +123,14 @@ TEST(FilmLanes, AgreeWithAiry) {
     }
 }
 
-std::array<double, Guide::kBins> importance_of(const std::function<double(double)>& f) {
-  std::array<double, Guide::kBins> importance;
-  for (int bin = 0; bin < Guide::kBins; ++bin) importance[bin] = f((bin + 0.5) / Guide::kBins);
+std::array<double, BaseGuide::kBins> importance_of(const std::function<double(double)>& f) {
+  std::array<double, BaseGuide::kBins> importance;
+  for (int bin = 0; bin < BaseGuide::kBins; ++bin) importance[bin] = f((bin + 0.5) / BaseGuide::kBins);
   return importance;
 }
 
-TEST(Guide, NothingImportantIsCosineWeighted) {
-  const Guide guide(importance_of([](double) { return 0.0; }));
+TEST(BaseGuide, NothingImportantIsCosineWeighted) {
+  const BaseGuide guide(importance_of([](double) { return 0.0; }));
   for (const double u : {0.0, 0.2, 0.77, 0.999999}) {
     EXPECT_NEAR(guide.sample(u).square, u, 1e-14);
     EXPECT_NEAR(guide.sample(u).per_density, 1, 1e-13);
@@ -139,22 +139,22 @@ TEST(Guide, NothingImportantIsCosineWeighted) {
 
 // The inverse of the cumulative distribution: E[1 / density over samples] = 1 on every interval, and
 // density() is what sample() says; bounded by the cosine-weighted share.
-TEST(Guide, SamplesFollowTheDensity) {
-  const Guide guide(importance_of([](double t) { return t < 0.55 ? 1.0 : 0.05; }));
+TEST(BaseGuide, SamplesFollowTheDensity) {
+  const BaseGuide guide(importance_of([](double t) { return t < 0.55 ? 1.0 : 0.05; }));
   double covered = 0;
   constexpr int kSteps = 64000;
   for (int i = 0; i < kSteps; ++i) {
     const auto at = guide.sample((i + 0.5) / kSteps);
     covered += at.per_density / kSteps;
-    EXPECT_LE(at.per_density, 1 / Guide::kCosineShare + 1e-9);
+    EXPECT_LE(at.per_density, 1 / BaseGuide::kCosineShare + 1e-9);
     EXPECT_NEAR(guide.density(at.square) * at.per_density, 1, 1e-9);
     EXPECT_NEAR(at.square, covered, 2e-3);
   }
   EXPECT_NEAR(covered, 1, 1e-9);
 }
 
-TEST(Guide, PacketsSampleAsOneLaneDoes) {
-  const Guide guide(importance_of([](double t) { return t * t; }));
+TEST(BaseGuide, PacketsSampleAsOneLaneDoes) {
+  const BaseGuide guide(importance_of([](double t) { return t * t; }));
   Rng rng(3, 0);
   const Lanes u = Uniform<Lanes>::draw(rng);
   const auto at = guide.sample(u);

@@ -29,7 +29,7 @@ test::FacetedFilm straight(double roughness) {
 const Vec3 kDirections[] = {spherical_direction(0.1, 0), spherical_direction(0.8, 0.5),
                             spherical_direction(1.3, 2)};
 
-// sin m = sin w / n2, same azimuth; T of the independent film; nothing but reflection and passage.
+// sin m = sin w / n2, same azimuth; T of the independent film; nothing but reflection and crossing.
 TEST(FacetedFilm, SmoothCrossingObeysSnell) {
   const test::FacetedFilm film = refracting(0, 1.5);
   Rng rng(1, 0);

@@ -66,14 +66,11 @@ void Stack::walk_below(Vec3 travel, Powers& power, Rng& rng, Visit& visit) const
   const double least = kFaint * total(power);
   double depth = 0;
   for (;;) {
-    const double cosine = std::max(std::abs(travel.z), 1e-12);
-    const double to_border = (travel.z < 0 ? 1 - depth : depth) / cosine;
-    const double free_path = slab.scatters() ? slab.sample_free_path(rng) : to_border;
-    const double length = std::min(free_path, to_border);
-    attenuate(length, power);
-    visit.leg(slab.flight(length * cosine, cosine));
-    if (free_path < to_border) {
-      depth = std::clamp(depth - length * travel.z, 0.0, 1.0);
+    const Leg leg = next_leg(slab, depth, travel, rng);
+    attenuate(leg.length, power);
+    visit.leg(slab.flight(leg.length * leg.cosine, leg.cosine));
+    if (leg.scatters) {
+      depth = depth_after(leg, depth, travel);
       visit.meet(depth, travel, power);
       const Vec3 next = slab.sample_phase(travel, rng);
       const double phase = slab.phase(dot(travel, next));
@@ -81,8 +78,8 @@ void Stack::walk_below(Vec3 travel, Powers& power, Rng& rng, Visit& visit) const
       visit.scattered(phase, depth, travel, power);
     } else if (travel.z < 0) {
       depth = 1;
-      if (!visit.at_base(cosine, power)) return;
-      leave_base(power, cosine, travel, rng);
+      if (!visit.at_base(leg.cosine, power)) return;
+      leave_base(power, leg.cosine, travel, rng);
     } else {
       depth = 0;
       if (!reflect_below(travel, Visit::kIsCamera, power, rng)) return;

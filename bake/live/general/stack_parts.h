@@ -5,8 +5,8 @@
 
 namespace sunbeam::walk {
 
-// Room for the rays of an exit, in powers. What passes more facets than fit, some fifty in a row at twenty
-// wavelengths, is left out.
+// Room for the rays of an exit, in powers. Connections beyond it, to light that passes some fifty facets in a
+// row at twenty wavelengths, are left out. Estimates are unbiased but for that.
 inline constexpr int kRoom = 1024, kMostRays = 128;
 
 // A walk that has lost all but this of its power goes on by roulette.
@@ -22,6 +22,23 @@ inline bool survives(Powers& power, int count, double total, double least, Rng& 
   if (!(rng.uniform() * least < total)) return false;
   scale(power, count, least / total);
   return true;
+}
+
+// A straight leg of a walk between film and base, to the next scattering event or to either border.
+struct Leg {
+  double cosine;  // of its travel with the normal, without sign
+  double length;
+  bool scatters;
+};
+inline Leg next_leg(const Slab& slab, double depth, const Vec3& travel, Rng& rng) {
+  const double cosine = std::max(std::abs(travel.z), 1e-12);
+  const double to_border = (travel.z < 0 ? 1 - depth : depth) / cosine;
+  const double free_path = slab.scatters() ? slab.sample_free_path(rng) : to_border;
+  return {cosine, std::min(free_path, to_border), free_path < to_border};
+}
+// Where the leg ends, if it scatters.
+inline double depth_after(const Leg& leg, double depth, const Vec3& travel) {
+  return std::clamp(depth - leg.length * travel.z, 0.0, 1.0);
 }
 
 // A Place that costs nothing to leave uninitialised.

@@ -74,12 +74,10 @@ Vec3 Stack::return_to_film(Vec3 travel, Powers& power, Rng& rng) const {
   const Slab& slab = stack_.slab;
   double depth = 0;
   for (;;) {
-    const double cosine = std::max(std::abs(travel.z), 1e-12);
-    const double to_border = (travel.z < 0 ? 1 - depth : depth) / cosine;
-    const double free_path = slab.scatters() ? slab.sample_free_path(rng) : to_border;
-    attenuate(std::min(free_path, to_border), power);
-    if (free_path < to_border) {
-      depth = std::clamp(depth - free_path * travel.z, 0.0, 1.0);
+    const Leg leg = next_leg(slab, depth, travel, rng);
+    attenuate(leg.length, power);
+    if (leg.scatters) {
+      depth = depth_after(leg, depth, travel);
       travel = slab.sample_phase(travel, rng);
       continue;
     }
@@ -88,7 +86,7 @@ Vec3 Stack::return_to_film(Vec3 travel, Powers& power, Rng& rng) const {
     travel = sample_cosine({rng.uniform(), rng.uniform()});
     for (int j = 0; j < count_; ++j) power[j] *= layers_.albedo[j];
     if (layers_.product)
-      for (int j = 0; j < count_; ++j) power[j] *= std::exp(-layers_.tau[j] / (cosine * travel.z));
+      for (int j = 0; j < count_; ++j) power[j] *= std::exp(-layers_.tau[j] / (leg.cosine * travel.z));
   }
 }
 

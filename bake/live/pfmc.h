@@ -7,14 +7,14 @@
 // Unidirectional: walks from wi connect to wo through the film at every visit of the base (unidirectional.h).
 // Bidirectional: walks from both sides, every connection, weighted by the balance heuristic
 // (bidirectional.h). Both are unbiased and exact in expectation for every film, smooth or rough, straight or
-// refracting. Reciprocity of the crossing turns leaving into entering, which leaves one factor (n0/n2)^2 on
-// the whole rest.
+// refracting (but for what general_walk_parts.h leaves out). Reciprocity of the crossing turns leaving into
+// entering, which leaves one factor (n0/n2)^2 on the whole rest.
 //
 // For plain materials (Material::is_plain) one estimate is the mean of kLanes stratified walks, worked on
 // side by side at all wavelengths (kernels.h); so it is for what has reached the base through multiple
 // isotropic facets and a clear pigment (facets_walk.h), whatever the technique. All else is the mean of a few
-// walks in three dimensions (stack.h). Directions are chosen alike for all wavelengths. No hidden state, no
-// allocation in a call.
+// walks in three dimensions (general_walk.h). Directions are chosen alike for all wavelengths. No hidden
+// state, no allocation in a call.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@
 #include <optional>
 #include <span>
 
-#include "bake/live/general/stack.h"
+#include "bake/live/general/general_walk.h"
 #include "bake/live/walks/film_events.h"
 #include "bake/live/walks/kernels.h"
 #include "sunbeam/bsdf.h"
@@ -44,10 +44,12 @@ class Pfmc {
 
   // Directions wo that share a walk in add_rest().
   std::size_t exits_per_walk() const {
-    return family_ == Family::plain ? std::numeric_limits<std::size_t>::max() : walk::Stack::kMostExits;
+    return family_ == Family::plain ? std::numeric_limits<std::size_t>::max() : walk::GeneralWalk::kMostExits;
   }
 
-  int walks_per_estimate() const { return family_ == Family::general ? walk::Stack::kWalks : walk::kLanes; }
+  int walks_per_estimate() const {
+    return family_ == Family::general ? walk::GeneralWalk::kWalks : walk::kLanes;
+  }
 
   // Film reflectance from outside. Exact.
   Rgb film_reflectance(double cos_exterior) const;
@@ -108,19 +110,21 @@ class Pfmc {
   double mean_power(const Powers& powers) const;
   Rgb fold(const double* values) const;
   Powers reflectances(const walk::FilmSide& film, double cosine) const;
+  std::optional<BsdfSample> sample_plain(const Vec3& wo, Rng& rng, const Pfmc& below) const;
+  double estimate_plain_pdf(const Vec3& wo, const Vec3& wi, Rng& rng, const Pfmc& below) const;
   std::optional<BsdfSample> sample_below(double cosine, Powers& throughput, Rng& rng) const;
   double leave_pdf(const Vec3& wi, Rng& rng, double& cosine) const;
   double pdf_below(const Vec3& wi, Rng& rng) const;
 
-  void add_stack_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, std::span<Rgb> sums,
-                      Technique technique) const;
+  void add_general_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, std::span<Rgb> sums,
+                        Technique technique) const;
   void add_facets_rest(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* values) const;
-  std::optional<BsdfSample> sample_stack(const Vec3& wo, Rng& rng, const Pfmc& below) const;
-  double estimate_stack_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const;
-  walk::Stack stack(walk::Carrying carrying) const;
+  std::optional<BsdfSample> sample_general(const Vec3& wo, Rng& rng, const Pfmc& below) const;
+  double estimate_general_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const;
+  walk::GeneralWalk general_walk(walk::Carrying carrying) const;
 
   walk::Layers layers_;
-  walk::StackLayers stack_;
+  walk::GeneralLayers general_;
   Family family_;
   std::array<Rgb, kMostWavelengths> weight_;
   std::array<double, kMostWavelengths> importance_;

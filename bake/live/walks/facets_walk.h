@@ -1,5 +1,5 @@
 // The base part of the rest with multiple facets, for a packet of walks at once: isotropic facets, clear
-// pigment (templates; see stack.h for the parts, microsurface.h for the facets).
+// pigment (templates; see general_walk.h for the parts, microsurface.h for the facets).
 //
 // The base forgets azimuth and every event at a facet looks at signed polar cosines alone, so a walk is a
 // cosine and a height. Lanes need different numbers of facets between two visits of the base: every round is

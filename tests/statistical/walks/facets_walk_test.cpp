@@ -37,8 +37,8 @@ class General {
  private:
   static constexpr double importance_[3] = {1 / 3.0, 1 / 3.0, 1 / 3.0};
   walk::Layers layers_;
-  walk::StackLayers stack_;
-  walk::Stack walks_;
+  walk::GeneralLayers stack_;
+  walk::GeneralWalk walks_;
 };
 
 void expect_agreement(const std::string& name, const Material& material, double angle_o, double angle_i) {

@@ -1,7 +1,7 @@
-// What the source files of Stack share.
+// What the source files of GeneralWalk share.
 #pragma once
 
-#include "bake/live/general/stack.h"
+#include "bake/live/general/general_walk.h"
 
 namespace sunbeam::walk {
 
@@ -42,13 +42,13 @@ inline double depth_after(const Leg& leg, double depth, const Vec3& travel) {
 }
 
 // A Place that costs nothing to leave uninitialised.
-struct Stack::PackedPlace {
+struct GeneralWalk::PackedPlace {
   Side side;
   double x, y, z, depth;
 };
 
 // A direction drawn backwards from an exit to below the film.
-struct Stack::Exit {
+struct GeneralWalk::Exit {
   Vec3 wo;
   bool is_open;
   Vec3 up;  // travel of light that takes this exit
@@ -56,7 +56,7 @@ struct Stack::Exit {
   // On its way, after each facet passed as long as none has mirrored.
   int rays;
   std::array<PackedPlace, kMostRays> ray;
-  std::array<double, kRoom> ray_power;  // Stack's count_ for each
+  std::array<double, kRoom> ray_power;  // count_ of the walk for each
 
   Place place(int k) const { return {ray[k].side, {ray[k].x, ray[k].y, ray[k].z}, ray[k].depth}; }
 };

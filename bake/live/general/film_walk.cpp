@@ -1,5 +1,5 @@
-// The film as walks of the general stack meet it, and the facets part of the rest.
-#include "bake/live/general/stack_parts.h"
+// The film as the general walk meets it, and the facets part of the rest.
+#include "bake/live/general/general_walk_parts.h"
 
 namespace sunbeam::walk {
 namespace {
@@ -18,23 +18,23 @@ double visibility(const Microsurface& facets, const Vec3& y, double depth, doubl
 
 }  // namespace
 
-Vec3 Stack::sample_normal(const Vec3& w, Rng& rng) const {
+Vec3 GeneralWalk::sample_normal(const Vec3& w, Rng& rng) const {
   if (layers_.is_smooth()) return {0, 0, 1};
-  return stack_.facets.sample_facet(-w, rng);
+  return general_.facets.sample_facet(-w, rng);
 }
 
 // What single facets lose, for light that comes along `from` and goes on along `to`. As a chance there is no
 // loss; but the camera's walk stands for one in the other direction.
-double Stack::shadowing(const Vec3& from, const Vec3& to, bool is_camera) const {
+double GeneralWalk::shadowing(const Vec3& from, const Vec3& to, bool is_camera) const {
   if (layers_.is_smooth()) return 1;
-  const Ggx& ggx = stack_.facets.ggx();
+  const Ggx& ggx = general_.facets.ggx();
   if (chance_) return is_camera ? ggx.g1(to) / ggx.g1(from) : 1;
   return ggx.g2_over_g1(from, to);
 }
 
 // Single facets, from outside along w; `power` becomes the film's, `travel` the way down below it. False if
 // it is lost.
-bool Stack::pass_once(const Vec3& w, bool is_camera, Powers& power, Vec3& travel, Rng& rng) const {
+bool GeneralWalk::pass_once(const Vec3& w, bool is_camera, Powers& power, Vec3& travel, Rng& rng) const {
   const Vec3 h = sample_normal(w, rng);
   Vec3 m = w;
   if (layers_.bends && (!refract(w, h, layers_.index_ratio, m) || m.z <= 0)) return false;
@@ -47,9 +47,9 @@ bool Stack::pass_once(const Vec3& w, bool is_camera, Powers& power, Vec3& travel
 }
 
 // Light on its way up is thrown back; what leaves is not followed.
-bool Stack::reflect_below(Vec3& travel, bool is_camera, Powers& power, Rng& rng) const {
-  if (stack_.multiple) {
-    const Place at = stack_.facets.first_facet(Side::inside, -travel, rng);
+bool GeneralWalk::reflect_below(Vec3& travel, bool is_camera, Powers& power, Rng& rng) const {
+  if (general_.multiple) {
+    const Place at = general_.facets.first_facet(Side::inside, -travel, rng);
     return wander(at, power, travel, rng, [](const Place&, const Powers&) {});
   }
   const Vec3 h = sample_normal(travel, rng), m = reflect(travel, h);
@@ -63,7 +63,7 @@ bool Stack::reflect_below(Vec3& travel, bool is_camera, Powers& power, Rng& rng)
 }
 
 // The other side of a facet.
-bool Stack::pass(const Place& at, const Vec3& h, Place& passed) const {
+bool GeneralWalk::pass(const Place& at, const Vec3& h, Place& passed) const {
   passed = {opposite(at.side), -at.travel, depth_from_other_side(at.depth)};
   const double ratio = at.side == Side::outside ? layers_.index_ratio : 1 / layers_.index_ratio;
   return !layers_.bends || refract(-at.travel, h, ratio, passed.travel);
@@ -73,8 +73,9 @@ bool Stack::pass(const Place& at, const Vec3& h, Place& passed) const {
 // use there; `through`, the same for light that leaves facets as a whole behind (straight); the share `fixed`
 // of the choice looks at no power. `power` is weighed for the choice alone.
 template <class Stays>
-Stack::Turn Stack::turn(Place& at, Powers& power, double through, double fixed, Rng& rng, Stays stays) const {
-  const Vec3 h = stack_.facets.sample_facet(at.travel, rng);
+GeneralWalk::Turn GeneralWalk::turn(Place& at, Powers& power, double through, double fixed, Rng& rng,
+                                    Stays stays) const {
+  const Vec3 h = general_.facets.sample_facet(at.travel, rng);
   Powers r;
   reflectances(at, -dot(at.travel, h), r);
   Place mirrored{at.side, reflect(-at.travel, h), at.depth}, passed;
@@ -102,8 +103,8 @@ Stack::Turn Stack::turn(Place& at, Powers& power, double through, double fixed, 
 // would leave upwards is kept, with the chance that it meets another facet as its weight: others account for
 // it. on_passing(beyond, power) as long as none has mirrored.
 template <class OnPassing>
-bool Stack::wander(Place at, Powers& power, Vec3& travel, Rng& rng, OnPassing on_passing) const {
-  const Microsurface& facets = stack_.facets;
+bool GeneralWalk::wander(Place at, Powers& power, Vec3& travel, Rng& rng, OnPassing on_passing) const {
+  const Microsurface& facets = general_.facets;
   const double through = at.side == Side::outside ? 1 : 0;
   const auto stays = [&](const Place& place) {
     return place.side == Side::outside ? 1 - facets.escape_chance(place) : 1;
@@ -128,8 +129,8 @@ bool Stack::wander(Place at, Powers& power, Vec3& travel, Rng& rng, OnPassing on
 
 // Facets part by one technique: light from wi that stays among facets, and at each of them what the exits see
 // of it.
-void Stack::follow_facets(const Vec3& wi, const Exit* exits, int count, Rng& rng, double* sums) const {
-  const Microsurface& facets = stack_.facets;
+void GeneralWalk::follow_facets(const Vec3& wi, const Exit* exits, int count, Rng& rng, double* sums) const {
+  const Microsurface& facets = general_.facets;
   FacetPath path{facets.first_facet(Side::outside, -wi, rng)};
   Place& at = path.at;
   at.is_entry = true;
@@ -154,7 +155,7 @@ void Stack::follow_facets(const Vec3& wi, const Exit* exits, int count, Rng& rng
 }
 
 // Both techniques, from either end: a path is connected at the last facet that mirrors or at the first.
-void Stack::add_facets(const Vec3& wi, const Exit* exits, int count, Rng& rng, double* sums) const {
+void GeneralWalk::add_facets(const Vec3& wi, const Exit* exits, int count, Rng& rng, double* sums) const {
   follow_facets(wi, exits, count, rng, sums);
   if (chance_) return;  // the first facet of a sampled walk is taken by other chances than the last
   Exit entry;
@@ -164,17 +165,17 @@ void Stack::add_facets(const Vec3& wi, const Exit* exits, int count, Rng& rng, d
 
 // From outside along w to below the film; on_passing as in wander().
 template <class OnPassing>
-bool Stack::enter(const Vec3& w, bool is_camera, Powers& power, Vec3& travel, Rng& rng,
-                  OnPassing on_passing) const {
-  if (!stack_.multiple) return pass_once(w, is_camera, power, travel, rng);
+bool GeneralWalk::enter(const Vec3& w, bool is_camera, Powers& power, Vec3& travel, Rng& rng,
+                        OnPassing on_passing) const {
+  if (!general_.multiple) return pass_once(w, is_camera, power, travel, rng);
   std::fill_n(power.begin(), count_, 1.0);
   travel = -w;
-  Place at = stack_.facets.first_facet(Side::outside, -w, rng);
+  Place at = general_.facets.first_facet(Side::outside, -w, rng);
   at.is_entry = !is_camera;
   return wander(at, power, travel, rng, on_passing);
 }
 
-void Stack::draw_exit(const Vec3& wo, Exit& exit, Rng& rng) const {
+void GeneralWalk::draw_exit(const Vec3& wo, Exit& exit, Rng& rng) const {
   exit.wo = wo;
   exit.rays = 0;
   exit.is_open = enter(wo, true, exit.power, exit.up, rng, [&](const Place& beyond, const Powers& power) {
@@ -187,21 +188,21 @@ void Stack::draw_exit(const Vec3& wo, Exit& exit, Rng& rng) const {
 }
 
 // What the facets part needs of an exit.
-void Stack::draw_rays(const Vec3& wo, Exit& exit, Rng& rng) const {
+void GeneralWalk::draw_rays(const Vec3& wo, Exit& exit, Rng& rng) const {
   exit.wo = wo;
   exit.rays = 0;
   if (!layers_.straight) draw_exit(wo, exit, rng);
 }
 
 // The light's way in, to its first arrival below; and, apart from it, the facets part of all exits.
-bool Stack::draw_entry(const Vec3& wi, const Exit* exits, int count, Powers& power, Vec3& travel, Rng& rng,
-                       double* sums) const {
-  if (stack_.multiple) add_facets(wi, exits, count, rng, sums);
+bool GeneralWalk::draw_entry(const Vec3& wi, const Exit* exits, int count, Powers& power, Vec3& travel,
+                             Rng& rng, double* sums) const {
+  if (general_.multiple) add_facets(wi, exits, count, rng, sums);
   return enter(wi, false, power, travel, rng, [](const Place&, const Powers&) {});
 }
 
 // Facets part: the facet that light is about to meet mirrors it towards an exit or lets it pass there.
-void Stack::connect_facet(const FacetPath& path, const Exit& exit, double* sums) const {
+void GeneralWalk::connect_facet(const FacetPath& path, const Exit& exit, double* sums) const {
   const Place& at = path.at;
   if (at.side == Side::outside && path.order > 0) mirror_towards(path, exit.wo, 0, nullptr, sums);
   for (int k = 0; k < exit.rays; ++k) {
@@ -212,17 +213,17 @@ void Stack::connect_facet(const FacetPath& path, const Exit& exit, double* sums)
 }
 
 // By a facet at `at` along y to what lies at the depth `origin`, without the reflectance, 1/sr.
-Stack::Meeting Stack::meet_exit(const Place& at, const Vec3& y, double origin) const {
-  const double visible = visibility(stack_.facets, y, at.depth, origin);
+GeneralWalk::Meeting GeneralWalk::meet_exit(const Place& at, const Vec3& y, double origin) const {
+  const double visible = visibility(general_.facets, y, at.depth, origin);
   if (visible == 0) return {0, 0};
   const Vec3 h = normalize(y - at.travel);
   if (h.z <= 0) return {0, 0};
-  return {stack_.facets.mirror_density(at.travel, h) * visible / std::abs(y.z), dot(y, h)};
+  return {general_.facets.mirror_density(at.travel, h) * visible / std::abs(y.z), dot(y, h)};
 }
 
 // What carries `beyond` (null: 1) is at the depth `origin`.
-void Stack::mirror_towards(const FacetPath& path, const Vec3& y, double origin, const double* beyond,
-                           double* sums) const {
+void GeneralWalk::mirror_towards(const FacetPath& path, const Vec3& y, double origin, const double* beyond,
+                                 double* sums) const {
   const Meeting met = meet_exit(path.at, y, origin);
   if (met.factor == 0) return;
   Powers r;
@@ -234,22 +235,22 @@ void Stack::mirror_towards(const FacetPath& path, const Vec3& y, double origin, 
 }
 
 // From the inside out along wo, by refraction.
-void Stack::pass_towards(const FacetPath& path, const Vec3& wo, double* sums) const {
+void GeneralWalk::pass_towards(const FacetPath& path, const Vec3& wo, double* sums) const {
   const Place& at = path.at;
   const double ratio = 1 / layers_.index_ratio;
   Vec3 h = wo + ratio * at.travel;
   if (h.z < 0) h = -h;
   h = normalize(h);
   if (dot(at.travel, h) >= 0 || dot(wo, h) <= 0) return;
-  const double visible = visibility(stack_.facets, wo, depth_from_other_side(at.depth), 0);
+  const double visible = visibility(general_.facets, wo, depth_from_other_side(at.depth), 0);
   Powers r;
   reflectances(at, -dot(at.travel, h), r);
-  const double factor = stack_.facets.passing_density(at.travel, h, wo, ratio) * visible *
+  const double factor = general_.facets.passing_density(at.travel, h, wo, ratio) * visible *
                         (chance_ ? 1 : 0.5) / (wo.z * kWalks);
   for (int j = 0; j < count_; ++j) sums[j] += path.power[j] * (1 - r[j]) * factor;
 }
 
-void Stack::add_facets(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const {
+void GeneralWalk::add_facets(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const {
   Exit exit[kMostExits];
   for (int k = 0; k < exits; ++k) draw_rays(wo[k], exit[k], rng);
   double found[kMostExits * kMostWavelengths];

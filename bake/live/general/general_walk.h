@@ -1,4 +1,4 @@
-// The general stack, one scalar walk at a time in three dimensions: rough films that may be anisotropic and
+// The general walk, one scalar path at a time in three dimensions: rough films that may be anisotropic and
 // whose facets may be met many times, over a pigment that may scatter.
 //
 // A path is split by what it has seen, each part with the estimator that suits it (docs/live.md):
@@ -19,9 +19,9 @@ namespace sunbeam::walk {
 
 using Powers = std::array<double, kMostWavelengths>;
 
-// What the general stack has beyond Layers.
-struct StackLayers {
-  explicit StackLayers(const Material& material)
+// What the general walk has beyond Layers.
+struct GeneralLayers {
+  explicit GeneralLayers(const Material& material)
       : facets(material.roughness),
         multiple(material.has_multiple_facets()),
         slab{material.scattering_depth(), material.anisotropy} {}
@@ -31,19 +31,24 @@ struct StackLayers {
   Slab slab;
 };
 
-// Whether powers are those of the material, or the chances that a sampled walk takes each turn: then there is
-// one "wavelength" with the mean reflectance, nothing is absorbed, and values become densities.
+// What a walk carries: power, or the chance of sample().
+//
+// sample() takes every turn at random, so the density of its directions has no closed form. But that density
+// is the value of another material: one "wavelength" whose film reflects with the chance that sample()
+// mirrors, over a pigment and a base that absorb nothing, for a walk that always goes on. With `chance` the
+// same code therefore estimates densities where it estimates the rest with `power`; single facets lose
+// nothing, since sample() pays for shadowing by weight.
 enum class Carrying { power, chance };
 
 // Where sample() ended.
-struct StackSample {
+struct GeneralSample {
   bool is_lost = false;
   Vec3 wi;
   bool is_first = false;                // one reflection by one upper facet, met at this cosine;
   double facet_cosine = 0, weight = 0;  // its throughput without the reflectance
 };
 
-class Stack {
+class GeneralWalk {
  public:
   static constexpr int kWalks = 4;      // in one estimate
   static constexpr int kMostExits = 8;  // directions served by one walk
@@ -51,8 +56,8 @@ class Stack {
   static constexpr int kMostCameraEvents = 16;
 
   // `importance` of each wavelength in choices, summing to 1. The arguments must outlive this.
-  Stack(const Layers& layers, const StackLayers& stack, const double* importance, const Kernels& kernels,
-        Carrying carrying = Carrying::power);
+  GeneralWalk(const Layers& layers, const GeneralLayers& general, const double* importance,
+              const Kernels& kernels, Carrying carrying = Carrying::power);
 
   // Adds an estimate of rest(wo[k], wi), 1/sr per wavelength (as a chance: one), to sums[k * count + j].
   void add_unidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const;
@@ -62,7 +67,7 @@ class Stack {
   void add_facets(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const;
 
   // One walk from wo. `power` is its throughput (unless is_first); every turn is taken by its mean power.
-  StackSample sample(const Vec3& wo, Powers& power, Rng& rng) const;
+  GeneralSample sample(const Vec3& wo, Powers& power, Rng& rng) const;
 
  private:
   struct PackedPlace;
@@ -139,7 +144,7 @@ class Stack {
   void add_base(const Powers& light, const Powers& camera, double walks, double* sums) const;
 
   const Layers& layers_;
-  const StackLayers& stack_;
+  const GeneralLayers& general_;
   const double* importance_;
   const Kernels& kernels_;
   bool chance_;

@@ -1,11 +1,12 @@
-// The general stack's sample(): one walk from wo that takes every turn by chance and ends where light leaves.
-#include "bake/live/general/stack_parts.h"
+// GeneralWalk::sample(): one walk from wo that takes every turn by chance and ends where light leaves.
+#include "bake/live/general/general_walk_parts.h"
 #include "sunbeam/detail/warp.h"
 
 namespace sunbeam::walk {
 
 // One facet: true if it mirrors. `power` is multiplied by what that turn weighs.
-bool Stack::choose_mirror(const Place& at, double cosine, Powers& power, double& chance, Rng& rng) const {
+bool GeneralWalk::choose_mirror(const Place& at, double cosine, Powers& power, double& chance,
+                                Rng& rng) const {
   Powers r;
   reflectances(at, cosine, r);
   const double mirrors = mirror_chance(at, r);
@@ -16,8 +17,8 @@ bool Stack::choose_mirror(const Place& at, double cosine, Powers& power, double&
 }
 
 // From the first facet met at `at` until light leaves the film on either side.
-void Stack::wander_freely(Place at, Powers& power, Outcome& out, Rng& rng) const {
-  const Microsurface& facets = stack_.facets;
+void GeneralWalk::wander_freely(Place at, Powers& power, Outcome& out, Rng& rng) const {
+  const Microsurface& facets = general_.facets;
   const Side start = at.side;
   const Vec3 unbent = -at.travel;  // in the frame of the other side
   for (out.facets = 1;; ++out.facets) {
@@ -44,10 +45,11 @@ void Stack::wander_freely(Place at, Powers& power, Outcome& out, Rng& rng) const
 }
 
 // Light that travels along x, in the frame of `side`, meets the film there.
-Stack::Outcome Stack::meet_film(Side side, const Vec3& x, bool is_entry, Powers& power, Rng& rng) const {
+GeneralWalk::Outcome GeneralWalk::meet_film(Side side, const Vec3& x, bool is_entry, Powers& power,
+                                            Rng& rng) const {
   Outcome out;
-  if (stack_.multiple) {
-    Place at = stack_.facets.first_facet(side, x, rng);
+  if (general_.multiple) {
+    Place at = general_.facets.first_facet(side, x, rng);
     at.is_entry = is_entry;
     wander_freely(at, power, out, rng);
     return out;
@@ -70,8 +72,8 @@ Stack::Outcome Stack::meet_film(Side side, const Vec3& x, bool is_entry, Powers&
 }
 
 // From below the film through pigment and base back up to it.
-Vec3 Stack::return_to_film(Vec3 travel, Powers& power, Rng& rng) const {
-  const Slab& slab = stack_.slab;
+Vec3 GeneralWalk::return_to_film(Vec3 travel, Powers& power, Rng& rng) const {
+  const Slab& slab = general_.slab;
   double depth = 0;
   for (;;) {
     const Leg leg = next_leg(slab, depth, travel, rng);
@@ -90,10 +92,10 @@ Vec3 Stack::return_to_film(Vec3 travel, Powers& power, Rng& rng) const {
   }
 }
 
-StackSample Stack::sample(const Vec3& wo, Powers& power, Rng& rng) const {
+GeneralSample GeneralWalk::sample(const Vec3& wo, Powers& power, Rng& rng) const {
   std::fill_n(power.begin(), count_, 1.0);
   Outcome film = meet_film(Side::outside, -wo, true, power, rng);
-  StackSample result;
+  GeneralSample result;
   result.is_first = film.side == Side::outside && film.facets == 1;
   result.facet_cosine = film.facet_cosine;
   result.weight = film.shadowing / film.chance;

@@ -1,41 +1,42 @@
-#include "bake/live/general/stack.h"
+#include "bake/live/general/general_walk.h"
 
-#include "bake/live/general/stack_parts.h"
+#include "bake/live/general/general_walk_parts.h"
 #include "sunbeam/detail/warp.h"
 
 namespace sunbeam::walk {
 
-Stack::Stack(const Layers& layers, const StackLayers& stack, const double* importance, const Kernels& kernels,
-             Carrying carrying)
+GeneralWalk::GeneralWalk(const Layers& layers, const GeneralLayers& general, const double* importance,
+                         const Kernels& kernels, Carrying carrying)
     : layers_(layers),
-      stack_(stack),
+      general_(general),
       importance_(importance),
       kernels_(kernels),
       chance_(carrying == Carrying::chance),
       count_(chance_ ? 1 : layers.count),
-      camera_events_(std::min(2 + static_cast<int>(stack.slab.g / (1 - stack.slab.g)), kMostCameraEvents)) {}
+      camera_events_(
+          std::min(2 + static_cast<int>(general.slab.g / (1 - general.slab.g)), kMostCameraEvents)) {}
 
-double Stack::total(const Powers& power) const {
+double GeneralWalk::total(const Powers& power) const {
   double sum = 0;
   for (int j = 0; j < count_; ++j) sum += power[j];
   return sum;
 }
 
 // How often sample() takes a facet to mirror.
-double Stack::mirror_chance(const Place& at, const Powers& r) const {
+double GeneralWalk::mirror_chance(const Place& at, const Powers& r) const {
   double mean = 0;
   for (int j = 0; j < layers_.count; ++j) mean += importance_[j] * r[j];
   mean = std::clamp(mean, 0.0, 1.0);
   return at.is_entry ? layers_.entry_chance(mean) : mean;
 }
 
-void Stack::reflectances(const Place& at, double cosine, Powers& r) const {
+void GeneralWalk::reflectances(const Place& at, double cosine, Powers& r) const {
   const FilmSide& film = at.side == Side::outside ? layers_.film : layers_.film_below;
   kernels_.reflectances(film, layers_.phases, std::clamp(cosine, 0.0, 1.0), r.data());
   if (chance_) r[0] = mirror_chance(at, r);
 }
 
-void Stack::attenuate(double length, Powers& power) const {
+void GeneralWalk::attenuate(double length, Powers& power) const {
   if (chance_ || layers_.product) return;
   if (layers_.same_tau) {
     if (layers_.least_tau > 0) scale(power, count_, std::exp(-layers_.least_tau * length));
@@ -45,7 +46,7 @@ void Stack::attenuate(double length, Powers& power) const {
 }
 
 // Up from the base, which light reached at the cosine `arrived`.
-void Stack::leave_base(Powers& power, double arrived, Vec3& travel, Rng& rng) const {
+void GeneralWalk::leave_base(Powers& power, double arrived, Vec3& travel, Rng& rng) const {
   if (chance_) {
     travel = sample_cosine({rng.uniform(), rng.uniform()});
     return;
@@ -61,8 +62,8 @@ void Stack::leave_base(Powers& power, double arrived, Vec3& travel, Rng& rng) co
 // meet(depth, travel, power) before and scattered(phase, depth, travel, power) after a scattering event;
 // thrown_back( travel, power) from the film; at_base(cosine, power), false to end there.
 template <class Visit>
-void Stack::walk_below(Vec3 travel, Powers& power, Rng& rng, Visit& visit) const {
-  const Slab& slab = stack_.slab;
+void GeneralWalk::walk_below(Vec3 travel, Powers& power, Rng& rng, Visit& visit) const {
+  const Slab& slab = general_.slab;
   const double least = kFaint * total(power);
   double depth = 0;
   for (;;) {
@@ -92,11 +93,11 @@ void Stack::walk_below(Vec3 travel, Powers& power, Rng& rng, Visit& visit) const
 // Slab part: light that scatters at `depth`, towards what lies at the depth `origin` against y and carries
 // `beyond`. `others` is the sum of 1 / (phase flight) over the events where the path could have been
 // connected instead: the balance heuristic, for a technique leaves exactly these two densities out.
-void Stack::scatter_towards(double depth, const Vec3& travel, const Powers& power, const Vec3& y,
-                            double origin, const Powers& beyond, double others, double* sums) const {
+void GeneralWalk::scatter_towards(double depth, const Vec3& travel, const Powers& power, const Vec3& y,
+                                  double origin, const Powers& beyond, double others, double* sums) const {
   const double distance = y.z > 0 ? depth - origin : origin - depth, cosine = std::abs(y.z);
   if (!(distance > 0) || cosine < 1e-12) return;
-  const double density = stack_.slab.phase(dot(travel, y)) * stack_.slab.flight(distance, cosine);
+  const double density = general_.slab.phase(dot(travel, y)) * general_.slab.flight(distance, cosine);
   if (density == 0) return;
   Powers value;
   for (int j = 0; j < count_; ++j) value[j] = power[j] * beyond[j];
@@ -107,16 +108,16 @@ void Stack::scatter_towards(double depth, const Vec3& travel, const Powers& powe
 
 // Base part: what the base makes of light that arrives and of what the camera sees of it, `walks` pairs in
 // all.
-void Stack::add_base(const Powers& light, const Powers& camera, double walks, double* sums) const {
+void GeneralWalk::add_base(const Powers& light, const Powers& camera, double walks, double* sums) const {
   for (int j = 0; j < count_; ++j)
     sums[j] +=
         light[j] * camera[j] * (chance_ ? 1 : layers_.albedo[j]) * kInvPi * layers_.radiance_scale / walks;
 }
 
 // The light's walk below the film, seen by exits that nothing scatters on.
-struct Stack::LightVisit {
+struct GeneralWalk::LightVisit {
   static constexpr bool kIsCamera = false;
-  const Stack& stack;
+  const GeneralWalk& walk;
   const Exit* exits;
   int count;
   double* sums;
@@ -126,27 +127,27 @@ struct Stack::LightVisit {
   void meet(double depth, const Vec3& travel, const Powers& power) {
     for (int k = 0; k < count; ++k)
       if (exits[k].is_open)
-        stack.scatter_towards(depth, travel, power, exits[k].up, 0, exits[k].power, 0,
-                              sums + k * stack.count_);
+        walk.scatter_towards(depth, travel, power, exits[k].up, 0, exits[k].power, 0, sums + k * walk.count_);
   }
   void scattered(double, double, const Vec3&, const Powers&) {}
   void thrown_back(const Vec3&, const Powers&) {}
   bool at_base(double cosine, const Powers& power) {
-    for (int j = 0; j < stack.count_; ++j) arrived[j] += power[j];
-    if (stack.layers_.product && !stack.chance_)
-      for (int k = 0; k < count; ++k) connect_product(cosine, power, exits[k], sums + k * stack.count_);
+    for (int j = 0; j < walk.count_; ++j) arrived[j] += power[j];
+    if (walk.layers_.product && !walk.chance_)
+      for (int k = 0; k < count; ++k) connect_product(cosine, power, exits[k], sums + k * walk.count_);
     return true;
   }
   void connect_product(double cosine, const Powers& power, const Exit& exit, double* sum) const {
     if (!exit.is_open) return;
     Powers value;
-    for (int j = 0; j < stack.count_; ++j)
-      value[j] = power[j] * std::exp(-stack.layers_.tau[j] / (cosine * exit.up.z));
-    stack.add_base(value, exit.power, kWalks, sum);
+    for (int j = 0; j < walk.count_; ++j)
+      value[j] = power[j] * std::exp(-walk.layers_.tau[j] / (cosine * exit.up.z));
+    walk.add_base(value, exit.power, kWalks, sum);
   }
 };
 
-void Stack::add_unidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const {
+void GeneralWalk::add_unidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& rng,
+                                     double* sums) const {
   Powers light{}, leaving[kMostExits]{};  // sums over walks, for the base part
   for (int walk = 0; walk < kWalks; ++walk) {
     Exit exit[kMostExits];
@@ -155,7 +156,7 @@ void Stack::add_unidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& r
       if (!exit[k].is_open) continue;
       Powers ballistic = exit[k].power;
       attenuate(1 / exit[k].up.z, ballistic);
-      const double unscattered = std::exp(-stack_.slab.scattering_depth / exit[k].up.z);
+      const double unscattered = std::exp(-general_.slab.scattering_depth / exit[k].up.z);
       for (int j = 0; j < count_; ++j) leaving[k][j] += ballistic[j] * unscattered;
     }
     Powers power;
@@ -170,7 +171,7 @@ void Stack::add_unidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& r
 }
 
 // A ray of the camera's walk through the slab: light that reaches `origin` against it is seen.
-struct Stack::CameraRay {
+struct GeneralWalk::CameraRay {
   double origin;
   double x, y, z;  // travel of that light
   Powers power;
@@ -178,7 +179,7 @@ struct Stack::CameraRay {
   int events;     // their number
 };
 
-struct Stack::CameraVisit {
+struct GeneralWalk::CameraVisit {
   static constexpr bool kIsCamera = true;
   int most_events = 0;
   Powers arrived{};
@@ -204,9 +205,9 @@ struct Stack::CameraVisit {
 };
 
 // Of the light's last events, the latest first: what the camera could have done in their place.
-struct Stack::PairedLightVisit {
+struct GeneralWalk::PairedLightVisit {
   static constexpr bool kIsCamera = false;
-  const Stack& stack;
+  const GeneralWalk& walk;
   const CameraVisit* cameras;
   int count;
   double* sums;
@@ -224,25 +225,24 @@ struct Stack::PairedLightVisit {
   void meet(double depth, const Vec3& travel, const Powers& power) {
     if (has_seen_base) return;
     std::array<double, kMostCameraEvents + 1> lately{};  // sums over the last events
-    for (int e = 0; e < stack.camera_events_; ++e) lately[e + 1] = lately[e] + inverse[e];
+    for (int e = 0; e < walk.camera_events_; ++e) lately[e + 1] = lately[e] + inverse[e];
     for (int k = 0; k < count; ++k)
       for (int r = 0; r < cameras[k].rays; ++r) {
         const CameraRay& ray = cameras[k].ray[r];
-        stack.scatter_towards(depth, travel, power, {ray.x, ray.y, ray.z}, ray.origin, ray.power,
-                              ray.others + lately[stack.camera_events_ - ray.events],
-                              sums + k * stack.count_);
+        walk.scatter_towards(depth, travel, power, {ray.x, ray.y, ray.z}, ray.origin, ray.power,
+                             ray.others + lately[walk.camera_events_ - ray.events], sums + k * walk.count_);
       }
   }
   void scattered(double phase, double, const Vec3&, const Powers&) { last_phase = phase; }
   void thrown_back(const Vec3&, const Powers&) {}
   bool at_base(double, const Powers& power) {
     has_seen_base = true;
-    for (int j = 0; j < stack.count_; ++j) arrived[j] += power[j];
+    for (int j = 0; j < walk.count_; ++j) arrived[j] += power[j];
     return true;
   }
 };
 
-void Stack::add_bidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const {
+void GeneralWalk::add_bidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const {
   if (layers_.product) return add_unidirectional(wi, wo, exits, rng, sums);
   Powers light{}, leaving[kMostExits]{};  // sums over walks, for the base part
   for (int walk = 0; walk < kWalks; ++walk) {

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "bake/recipe/recipe.h"
 #include "sunbeam/table_io.h"
 
 namespace sunbeam {
@@ -63,13 +62,5 @@ class BakeJob {
 
 // In the order of tasks, the whole of which `job` counts.
 std::uint64_t total_walks(const BakeJob& job, const Blocks& blocks);
-
-inline Symmetry symmetry_of(const Recipe& recipe) {
-  return recipe.material.roughness.is_isotropic() ? Symmetry::isotropic : Symmetry::anisotropic;
-}
-
-// Attributes of a table but for its measured error.
-std::map<std::string, std::string> info_of(const Recipe& recipe, Encoding encoding, std::uint64_t seed,
-                                           std::uint64_t walks, const char* estimator);
 
 }  // namespace sunbeam

@@ -226,6 +226,14 @@ Estimator default_truth(const Recipe& recipe) {
   return recipe.material.scatters() ? recipe.accuracy.estimator : Estimator::pfmc;
 }
 
+VerifySettings verify_settings_of(const Recipe& recipe) {
+  VerifySettings settings;
+  settings.truth = default_truth(recipe);
+  settings.tolerance_median = recipe.accuracy.tolerance_median;
+  settings.tolerance_p99 = recipe.accuracy.tolerance_p99;
+  return settings;
+}
+
 namespace {
 
 VerifyReport verify(const Table& table, const DenseCells* cells, const VerifySettings& settings) {

@@ -62,6 +62,9 @@ struct VerifyReport {
 // those of the recipe; the exact evaluator where the tolerance is finer than walks can show in useful time.
 Estimator default_truth(const Recipe& recipe);
 
+// The tolerances of the recipe and its default truth; points, seed and threads as they are by default.
+VerifySettings verify_settings_of(const Recipe& recipe);
+
 // Throws Error if the recipe in the table cannot be read, or naming the key if truth is exact and the
 // material has no exact evaluator.
 VerifyReport verify(const Table& table, const VerifySettings& settings);

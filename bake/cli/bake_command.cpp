@@ -6,10 +6,9 @@
 #include "bake/base/version.h"
 #include "bake/blocks/journal.h"
 #include "bake/cli/commands.h"
+#include "bake/cli/finish.h"
 #include "bake/cli/interrupt.h"
-#include "bake/dense/solved_job.h"
 #include "bake/jobs/bake.h"
-#include "bake/jobs/finish_bake.h"
 #include "bake/jobs/preview.h"
 #include "bake/jobs/work_folder.h"
 #include "sunbeam/core/error.h"
@@ -31,14 +30,14 @@ void announce(const Recipe& recipe, Encoding encoding) {
   fmt::print(stderr, "{}: dense, {} parameter nodes, {} x {} cosines, {} azimuths, values by {}\n",
              recipe.name, recipe.grid[0].size() * recipe.grid[1].size() * recipe.grid[2].size(),
              recipe.table.angles, recipe.table.angles, recipe.table.azimuths,
-             has_solution(recipe) ? "adding-doubling" : name_of(recipe.accuracy.estimator));
+             is_solved(recipe) ? "adding-doubling" : name_of(recipe.accuracy.estimator));
 }
 
 class BakeCommand {
  public:
   explicit BakeCommand(const BakeOptions& options)
       : options_(options),
-        form_(options.progress == "json" ? ProgressForm::json : ProgressForm::text),
+        form_(progress_form(options.progress)),
         recipe_(load_recipe(options.recipe, options.overrides)) {
     if (options.preview) recipe_ = preview_of(recipe_);
     for (const Encoding encoding : encodings_of(recipe_)) require_reasonable_size(recipe_, encoding);
@@ -86,14 +85,14 @@ class BakeCommand {
       const auto journal = journal_of(encoding);
       if (!run_blocks(*job, {0, job->tasks()}, *journal)) return kInterrupted;
       FinishedBake table(recipe_, *job, *journal);
-      const bool good =
-          table.measure_error(options_.preview ? kPreviewPoints : kCheckPoints, options_.threads, form_);
+      const bool good = measure_error(table, recipe_, options_.preview ? kPreviewPoints : kCheckPoints,
+                                      options_.threads, form_);
       if (encodings.size() > 1)
         fmt::print(stderr, "encoding auto: {} {} the tolerances (median {:g}, p99 {:g})\n", name_of(encoding),
                    good ? "is the smallest that meets" : "misses", recipe_.accuracy.tolerance_median,
                    recipe_.accuracy.tolerance_p99);
       if (!good && !options_.preview && encoding != encodings.back()) continue;
-      table.save(options_.output);
+      save(table, options_.output);
       break;
     }
     work_->remove();

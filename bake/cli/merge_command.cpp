@@ -2,13 +2,14 @@
 
 #include "bake/blocks/parts.h"
 #include "bake/cli/commands.h"
+#include "bake/cli/finish.h"
 #include "bake/jobs/bake.h"
-#include "bake/jobs/finish_bake.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/file.h"
 #include "sunbeam/table_vdb.h"
 
 namespace sunbeam {
+
 int run_merge(const MergeOptions& options) {
   require_table_extension(options.output);
   Parts parts(options.parts);
@@ -19,9 +20,9 @@ int run_merge(const MergeOptions& options) {
   parts.require_whole(*job);
   require_writable(options.output);
   FinishedBake table(recipe, *job, parts);
-  const bool good = table.measure_error(kCheckPoints, options.threads,
-                                        options.progress == "json" ? ProgressForm::json : ProgressForm::text);
-  table.save(options.output);
+  const bool good =
+      measure_error(table, recipe, kCheckPoints, options.threads, progress_form(options.progress));
+  save(table, options.output);
   const auto encodings = encodings_of(recipe);
   if (good || identity.encoding == name_of(encodings.back())) return 0;
   fmt::print(

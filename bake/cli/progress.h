@@ -11,6 +11,11 @@ namespace sunbeam {
 
 enum class ProgressForm { text, json };
 
+// Of the option --progress: "text" or "json".
+inline ProgressForm progress_form(const std::string& name) {
+  return name == "json" ? ProgressForm::json : ProgressForm::text;
+}
+
 class Progress {
  public:
   // `unit` and `total` give the rate: "nodes", 1280 shows nodes a second.

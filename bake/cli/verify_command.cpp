@@ -74,7 +74,6 @@ void write_html(const VerifyOptions& options, const Table& table, const Recipe& 
 }
 
 Estimator truth_of(const VerifyOptions& options, const Recipe& recipe) {
-  if (options.truth.empty()) return default_truth(recipe);
   try {
     return estimator_for_truth(estimator_of(options.truth), recipe.material);
   } catch (const Error& error) {
@@ -89,13 +88,11 @@ int run_verify(const VerifyOptions& options) {
   const Recipe recipe = parse_stored_recipe(table.info.at("recipe"), options.table + ": recipe");
   if (!options.json.empty()) require_writable(options.json);
   if (!options.html.empty()) check_html(options.html);
-  VerifySettings settings;
+  VerifySettings settings = verify_settings_of(recipe);
   settings.points = options.points;
   settings.seed = options.seed;
   settings.threads = options.threads;
-  settings.truth = truth_of(options, recipe);
-  settings.tolerance_median = recipe.accuracy.tolerance_median;
-  settings.tolerance_p99 = recipe.accuracy.tolerance_p99;
+  if (!options.truth.empty()) settings.truth = truth_of(options, recipe);
   settings.on_progress = Progress("verify", "points", options.points);
   const VerifyReport report = verify(table, settings);
 

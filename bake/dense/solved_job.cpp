@@ -8,6 +8,7 @@
 #include "bake/blocks/block_bytes.h"
 #include "bake/dense/nodes.h"
 #include "bake/live/adding_doubling/slab_films.h"
+#include "bake/recipe/attributes.h"
 
 namespace sunbeam {
 namespace {
@@ -152,10 +153,6 @@ class SolvedJob : public BakeJob {
 };
 
 }  // namespace
-
-bool has_solution(const Recipe& recipe) {
-  return recipe.table.values == TableValues::automatic && SlabSolver::solves(recipe.material);
-}
 
 std::unique_ptr<BakeJob> solved_job(const Recipe& recipe, std::uint64_t seed) {
   return std::make_unique<SolvedJob>(recipe, seed);

@@ -4,10 +4,9 @@
 #pragma once
 
 #include "bake/blocks/job.h"
+#include "bake/recipe/recipe.h"
 
 namespace sunbeam {
-
-bool has_solution(const Recipe& recipe);
 
 // `recipe` must outlive the job.
 std::unique_ptr<BakeJob> solved_job(const Recipe& recipe, std::uint64_t seed);

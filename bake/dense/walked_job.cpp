@@ -7,6 +7,7 @@
 #include "bake/blocks/block_bytes.h"
 #include "bake/dense/nodes.h"
 #include "bake/live/pfmc.h"
+#include "bake/recipe/attributes.h"
 
 namespace sunbeam {
 namespace {

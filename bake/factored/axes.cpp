@@ -100,8 +100,6 @@ NdArray exchange_outline(const Recipe& recipe, const Wavelengths& w) {
 
 }  // namespace
 
-bool has_factors(const Material& material) { return !material.scatters() && !material.has_multiple_facets(); }
-
 std::vector<Axis> direction_axes(const Recipe& recipe, const std::string& suffix) {
   const auto cosines = spaced_nodes(kLowestCosine, 1, static_cast<std::size_t>(recipe.table.angles), 2);
   Axis phi{"phi" + suffix, "rad", {0}};

@@ -7,9 +7,6 @@
 
 namespace sunbeam {
 
-// Isotropic or anisotropic film, single facets, no scattering.
-bool has_factors(const Material& material);
-
 // Axes of the recipe's factored table: its arrays as outlines. Throws Error if it would be larger than a
 // machine can hold.
 Factors factor_axes(const Recipe& recipe);

@@ -5,6 +5,7 @@
 #include "bake/factored/arrival.h"
 #include "bake/factored/exchange.h"
 #include "bake/factored/returned.h"
+#include "bake/recipe/attributes.h"
 #include "sunbeam/detail/text.h"
 
 namespace sunbeam {

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "bake/blocks/job.h"
+#include "bake/recipe/recipe.h"
 
 namespace sunbeam {
 

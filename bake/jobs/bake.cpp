@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "bake/base/version.h"
 #include "bake/blocks/run.h"
 #include "bake/dense/film_arrays.h"
 #include "bake/dense/nodes.h"
@@ -38,22 +37,6 @@ double bytes_of(const Recipe& recipe, Encoding encoding) {
   return (3 * value + 4) * cells_of(rest_axes(recipe)) + films * 3 * 4 * cells_of(film_axes(recipe));
 }
 
-std::uint64_t total_walks(const BakeJob& job, const Blocks& blocks) {
-  std::uint64_t walks = 0;
-  for (std::size_t task = 0; task < job.tasks(); ++task) walks += blocks.summary(task).walks;
-  return walks;
-}
-
-std::map<std::string, std::string> info_of(const Recipe& recipe, Encoding encoding, std::uint64_t seed,
-                                           std::uint64_t walks, const char* estimator) {
-  std::map<std::string, std::string> info{{"recipe", recipe.text},        {"recipe_hash", recipe.hash},
-                                          {"seed", std::to_string(seed)}, {"samples", std::to_string(walks)},
-                                          {"estimator", estimator},       {"tool_version", kToolVersion},
-                                          {"encoding", name_of(encoding)}};
-  info.merge(recipe.spectrum.attributes());
-  return info;
-}
-
 std::vector<Encoding> encodings_of(const Recipe& recipe) {
   if (recipe.table.encoding != Encoding::automatic) return {recipe.table.encoding};
   if (!has_factors(recipe.material)) return {Encoding::dense};
@@ -81,7 +64,7 @@ void require_reasonable_size(const Recipe& recipe, Encoding encoding) {
 
 std::unique_ptr<BakeJob> make_job(const Recipe& recipe, Encoding encoding, std::uint64_t seed) {
   if (encoding == Encoding::factored) return factored_job(recipe, seed);
-  return has_solution(recipe) ? solved_job(recipe, seed) : walked_job(recipe, seed);
+  return is_solved(recipe) ? solved_job(recipe, seed) : walked_job(recipe, seed);
 }
 
 Table whole_table(const Table& outline, const DenseCells& cells) {

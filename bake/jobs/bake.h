@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "bake/blocks/job.h"
+#include "bake/recipe/recipe.h"
 
 namespace sunbeam {
 

@@ -1,10 +1,11 @@
 // What follows the last block of a bake, wherever the blocks are: measure the table's error, write it.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "bake/blocks/job.h"
-#include "bake/cli/progress.h"
+#include "bake/check/verify.h"
 
 namespace sunbeam {
 
@@ -15,11 +16,13 @@ class FinishedBake {
   // `blocks` must have all of the job's, and outlive this, as recipe and job must.
   FinishedBake(const Recipe& recipe, const BakeJob& job, const Blocks& blocks);
 
-  // Stores the figures of `sunbeam verify TABLE --points POINTS` in the table. True if within the tolerances.
-  bool measure_error(int points, int threads, ProgressForm form);
+  // Stores the figures of `sunbeam verify TABLE --points POINTS` in the table, and returns them.
+  VerifyReport measure_error(int points, int threads, std::function<void(double fraction)> on_progress);
 
   // .exr: in memory for some nodes only.
   void save(const std::string& path) const;
+
+  const std::map<std::string, std::string>& info() const { return table_.info; }
 
  private:
   const Recipe& recipe_;

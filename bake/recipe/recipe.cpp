@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "bake/factored/axes.h"
 #include "runtime/config/config.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/file.h"

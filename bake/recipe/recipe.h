@@ -7,21 +7,13 @@
 
 #include "bake/live/estimator.h"
 #include "bake/optics/spectrum.h"
+#include "bake/recipe/encoding.h"
 #include "sunbeam/detail/axis.h"
 #include "sunbeam/detail/nd_array.h"
 #include "sunbeam/material.h"
 #include "sunbeam/table.h"
 
 namespace sunbeam {
-
-// How a table holds the rest: sunbeam/table.h. automatic: the smallest whose measured error meets the
-// recipe's tolerances.
-enum class Encoding { automatic, dense, factored };
-
-constexpr const char* name_of(Encoding encoding) {
-  constexpr const char* kNames[] = {"auto", "dense", "factored"};
-  return kNames[static_cast<int>(encoding)];
-}
 
 // Where the nodes of a dense table come from. automatic: adding and doubling where it solves the material
 // (live/adding_doubling/slab_solver.h), else walks.
@@ -59,6 +51,15 @@ struct Recipe {
   std::string text;  // canonical TOML with overrides applied
   std::string hash;  // of `text`
 };
+
+inline Symmetry symmetry_of(const Recipe& recipe) {
+  return recipe.material.roughness.is_isotropic() ? Symmetry::isotropic : Symmetry::anisotropic;
+}
+
+// True if a dense table of the recipe is solved, false if it is walked.
+inline bool is_solved(const Recipe& recipe) {
+  return recipe.table.values == TableValues::automatic && has_solution(recipe.material);
+}
 
 // `overrides` are "section.key=value". Throws Error for anything unknown, missing or out of range.
 Recipe load_recipe(const std::string& path, const std::vector<std::string>& overrides = {});

@@ -272,11 +272,8 @@ TEST(Golden, PreviewStatesItsError) {
       << path << " is missing: bake it from tables/recipes/preview.toml";
   const Table table = load_table_exr(path);
   const Recipe recipe = parse_stored_recipe(table.info.at("recipe"), path);
-  VerifySettings s;
+  VerifySettings s = verify_settings_of(recipe);
   s.points = 250;
-  s.truth = default_truth(recipe);
-  s.tolerance_median = recipe.accuracy.tolerance_median;
-  s.tolerance_p99 = recipe.accuracy.tolerance_p99;
   const VerifyReport report = verify(table, s);
   for (const auto& [name, value] : figures(report)) {
     ASSERT_TRUE(table.info.count("error." + name)) << name;

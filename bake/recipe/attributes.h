@@ -1,0 +1,16 @@
+// What a table says of the bake that made it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "bake/recipe/recipe.h"
+
+namespace sunbeam {
+
+// Attributes of a table but for its measured error.
+std::map<std::string, std::string> info_of(const Recipe& recipe, Encoding encoding, std::uint64_t seed,
+                                           std::uint64_t walks, const char* estimator);
+
+}  // namespace sunbeam

@@ -1,5 +1,6 @@
-// Light that leaves the base and is sent back to it by the film: `returned` of the factored encoding
-// (sunbeam/detail/factors.h), and the legs that exchange.h makes chains of.
+// Makes the array `returned` of a factored table, which sunbeam/detail/factors.h stores and
+// runtime/src/fit/wave_field.h looks up: light that leaves the base and is sent back to it by the film. The
+// legs it walks are those that exchange.h makes chains of.
 #pragma once
 
 #include "bake/blocks/job.h"

@@ -1,6 +1,6 @@
 // Makes the array `exchange` of a factored table, which sunbeam/detail/factors.h stores and
-// runtime/src/fit/wave_field.h looks up. Legs are walked and collected at the nodes of exchange_solver.h, each
-// between its two neighbours, and all their chains are summed at once.
+// runtime/src/fit/wave_field.h looks up. Legs are walked and collected at the nodes of exchange_solver.h,
+// each between its two neighbours, and all their chains are summed at once.
 #pragma once
 
 #include "bake/blocks/job.h"

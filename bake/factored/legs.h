@@ -9,6 +9,7 @@
 
 #include "bake/live/film/geometry.h"
 #include "bake/optics/fringes.h"
+#include "sunbeam/core/rng.h"
 #include "sunbeam/detail/axis.h"
 
 namespace sunbeam {

@@ -26,7 +26,7 @@ class LiveBsdf final : public Bsdf {
 
   // The first-surface density, and for the rest the chance of entering a smooth film at wo times the density
   // of leaving it after a visit of the base; both from tables over the cosine. How far it is off is measured
-  // in docs/live.md.
+  // in docs/theory/live.md.
   double mis_pdf(const Vec3& wo, const Vec3& wi) const override;
   bool is_isotropic() const override { return is_isotropic_; }
 

@@ -1,8 +1,8 @@
 // How a recipe sees colour: the wavelengths that are computed, the base at each of them, and their fold.
 //
 // rgb3  650, 510 and 475 nm are taken as the linear channels R, G, B, which whoever shows them reads as
-// Rec.709. full  the nodes of a fitted quadrature (docs/color.md) fold into a linear colour space under an
-// illuminant. The
+// Rec.709. full  the nodes of a fitted quadrature (docs/theory/color.md) fold into a linear colour space
+// under an illuminant. The
 //       albedo has a spectrum, given or uplifted from RGB, and the pigment's absorption a relative spectrum.
 //
 // Material::albedo is in the space of the fold; artists write Rec.709, and from_rec709() takes them there.

@@ -41,7 +41,8 @@ struct WavelengthQuadrature {
 // The reference: every 1 nm from 380 to 780 nm.
 WavelengthQuadrature brute_force(Illuminant illuminant, ColorSpace space);
 
-// The measured choice for films up to 2 n1 d0 = 2 * 1.8 * 1500 nm (table in docs/color.md). A multiple of 4.
+// The measured choice for films up to 2 n1 d0 = 2 * 1.8 * 1500 nm (table in docs/theory/color.md). A multiple
+// of 4.
 inline constexpr int kDefaultNodes = 20;
 inline constexpr double kDefaultLargestPathNm = 5400;
 

@@ -1,4 +1,5 @@
-// A recipe: what to bake, over which grid, how finely and how accurately. TOML; keys as in docs/recipe.md.
+// A recipe: what to bake, over which grid, how finely and how accurately. TOML; keys as in
+// docs/reference/recipe.md.
 #pragma once
 
 #include <cstdint>

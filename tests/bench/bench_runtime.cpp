@@ -1,6 +1,6 @@
 // Nanoseconds per call of a table bound to one parameter point, of the live model at the same point, by walks
 // and exactly, and of Lambert, over the same random directions; and of one plain look-up, the yardstick of
-// docs/performance.md. Run:
+// docs/measured/performance.md. Run:
 // build/release/bin/bench_runtime
 #include <benchmark/benchmark.h>
 

@@ -11,7 +11,7 @@
 // reflection from below, g = f1 + v_i^T M v_o, M = B + B F B + ... = (1 - B F)^-1 B.
 //
 // Exact here means deterministic: no noise, the same bits each time, symmetric to rounding. What is left is
-// quadrature error; docs/live.md lists it, and tests hold it. The nodes
+// quadrature error; docs/theory/live.md lists it, and tests hold it. The nodes
 // follow the directions refracted to grazing the base, and a film of lower index that light tunnels. Values
 // below 1e-20, deep in the pigment at grazing angles, may lose all relative precision.
 //

@@ -3,7 +3,7 @@
 // There the rest is exactly of rank one at each wavelength (exact.h),
 //     rest(wo, wi) = fold(gain_k A_k(wo) A_k(wi)),
 // so that functions of one cosine are all there is: A_k, and the film's reflectance folded to RGB. Both are
-// kept as PanelCurve, with errors about as small as those of ExactRest (docs/live.md).
+// kept as PanelCurve, with errors about as small as those of ExactRest (docs/theory/live.md).
 //
 // sample mixes visible normals (a smooth film: its mirror direction, a Dirac) and, uniform in azimuth, a
 // density over cos^2 in proportion to A_k, averaged over the wavelengths by the power they send out; pdf is

@@ -17,7 +17,7 @@
 
 namespace sunbeam {
 
-// Numbers of nodes. The defaults give the errors that docs/live.md states; tests double them.
+// Numbers of nodes. The defaults give the errors that docs/theory/live.md states; tests double them.
 struct ExactResolution {
   int per_panel = 10;  // of a panel of the cosine basis, at most 24
   int normals = 24;    // facets: polar angle of the normal,

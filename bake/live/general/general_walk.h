@@ -1,7 +1,8 @@
 // The general walk, one scalar path at a time in three dimensions: rough films that may be anisotropic and
 // whose facets may be met many times, over a pigment that may scatter.
 //
-// A path is split by what it has seen, each part with the estimator that suits it (docs/live.md):
+// A path is split by what it has seen, each part with the estimator that suits it
+// (docs/theory/scattering.md):
 //   base    paths that reach the base. It forgets directions, so that everything before the last visit and
 //           everything after it are independent: the product of two mean arrivals.
 //   slab    paths that scatter in the pigment and never reach the base: the light's scattering events connect

@@ -3,7 +3,7 @@
 // Throughputs are powers per wavelength. At the base a walk that arrived along m connects to m', a crossing
 // drawn from wo: f1(m, m') T(wo -> m'). That alone serves every film: f1 is bounded by kd / pi and the
 // crossing's weight by 1. (Adding the walk's own way out through a rough film by multiple importance sampling
-// was measured: more time and, if anything, more noise; docs/live.md.)
+// was measured: more time and, if anything, more noise; docs/theory/live.md.)
 #pragma once
 
 #include "bake/live/walks/film_events.h"

@@ -1,5 +1,5 @@
 // Table files. Two forms hold the same content without loss: `.exr` (multi-part OpenEXR, here) and `.vdb`
-// (OpenVDB grids, in table_vdb.h, an optional target). docs/table_format.md draws both layouts.
+// (OpenVDB grids, in table_vdb.h, an optional target). docs/reference/table_format.md draws both layouts.
 //
 // Every function throws Error naming the file and what is wrong; writing is atomic.
 #pragma once

@@ -9,7 +9,7 @@
 namespace sunbeam {
 namespace {
 
-const BakeIdentity kThis{kToolVersion, "hash", "[material]\n", "dense", 1, 0, 1, ""};
+const BakeIdentity kThis{kToolVersion, "hash", "[material]\n", "dense", 1, 0, 1};
 
 BakeIdentity of_another_version() {
   BakeIdentity identity = kThis;

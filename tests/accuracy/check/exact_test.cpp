@@ -9,7 +9,7 @@ namespace sunbeam {
 namespace {
 
 constexpr double kWavelengths[] = {650, 510, 475};
-constexpr double kFilmCosineStep = 1.0 / 64;  // of film_reflectance, see docs/table_format.md
+constexpr double kFilmCosineStep = 1.0 / 64;  // of film_reflectance, see docs/reference/table_format.md
 
 double airy_of(const Material& m, double cosine, int channel) {
   return static_cast<double>(test::airy_reference(m.exterior_ior, m.film_ior, m.base_ior, m.film_thickness_nm,

@@ -1,5 +1,5 @@
 // The spectral colour module: CIE data, colour spaces, wavelength quadratures, uplifting, absorption shapes.
-// docs/color.md quotes the numbers printed and enforced here.
+// docs/theory/color.md quotes the numbers printed and enforced here.
 #include <gtest/gtest.h>
 
 #include <cstdio>

@@ -14,7 +14,7 @@
 //                                                          itself where light passes straight on);
 // returned = the share of what leaves the base that the film sends back to it through the pigment.
 // The first term of "product" is one visit of the base through facets that do not bend light, exactly there.
-// Colours are rest = sum_k weight_k rest_k. Derivation: docs/table_format.md.
+// Colours are rest = sum_k weight_k rest_k. Derivation: docs/reference/table_format.md.
 //
 // fringe_order = 2 n1 d cos_1 / lambda, the phase between successive reflections in the film over 2 pi, at
 // the direction itself for `arrival`, at normal incidence for the other two. At a fixed order A varies slowly

@@ -2,8 +2,8 @@
 //
 // This is the reference form: scalar, double precision, anisotropic, directions as vectors. Other forms of
 // the same D, Lambda, G1, G2 and D_vis are written where lanes, precision or an integral ask for them: in
-// polar cosines, as the rate of a medium, as a mean over turns of a facet, as coordinates of a quadrature over
-// visible normals, in single floats. Each says so in its first lines.
+// polar cosines, as the rate of a medium, as a mean over turns of a facet, as coordinates of a quadrature
+// over visible normals, in single floats. Each says so in its first lines.
 //
 // Frame: local, macro normal = z; roughness.u along x, roughness.v along y. `w` and `h` are unit vectors;
 // w.z > 0. Roughness is the GGX alpha itself (not its square), > 0. Sources: Walter et al. 2007; Heitz 2014

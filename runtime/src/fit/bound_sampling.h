@@ -1,5 +1,5 @@
-// Makes what BoundTable samples with, from the values of a table at one parameter point. Densities follow the
-// mean over channels, and over the viewer's azimuth.
+// Makes what BoundTable (runtime/src/lookup/bound_table.h) samples with, from the values of a table at one
+// parameter point. Densities follow the mean over channels, and over the viewer's azimuth.
 #pragma once
 
 #include "runtime/src/lookup/bound_values.h"

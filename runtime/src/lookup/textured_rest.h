@@ -1,4 +1,5 @@
-// The rest of a factored table over all its parameters: the arrays L and X of textured_table.h.
+// Looks up the rest of a factored table over all its parameters: the arrays L and X of
+// sunbeam/textured_table.h, which runtime/src/fit/textured_fit.h makes.
 #pragma once
 
 #include <array>

@@ -1,5 +1,6 @@
 // The factored encoding of the rest: what walks have to find out about a film over a diffuse base without
-// scattering, once for all wavelengths.
+// scattering, once for all wavelengths. bake/factored/arrival.h, returned.h and exchange.h make the arrays,
+// runtime/src/fit/wave_field.h reads them.
 //
 // A film of thickness d at vacuum wavelength lambda acts by d / lambda alone, an absorbing pigment by its
 // optical depth tau there. So the arrays hold no colours and no thickness: one axis of fringe orders serves

@@ -1,9 +1,9 @@
-// Makes S and Q (runtime/src/lookup/separable.h) of the wavelengths of a factored table at one parameter
+// Makes S and Q (runtime/src/rest/separable.h) of the wavelengths of a factored table at one parameter
 // point.
 #pragma once
 
 #include "runtime/src/fit/bound_waves.h"
-#include "runtime/src/lookup/separable.h"
+#include "runtime/src/rest/separable.h"
 
 namespace sunbeam::inline v1 {
 

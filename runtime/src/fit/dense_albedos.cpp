@@ -1,6 +1,6 @@
 #include "runtime/src/fit/dense_albedos.h"
 
-#include "runtime/src/lookup/dense_rest.h"
+#include "runtime/src/rest/dense_rest.h"
 
 namespace sunbeam::inline v1 {
 namespace {

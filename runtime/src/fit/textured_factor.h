@@ -3,7 +3,7 @@
 #pragma once
 
 #include "runtime/src/fit/textured_waves.h"
-#include "runtime/src/lookup/textured_media.h"
+#include "runtime/src/rest/textured_media.h"
 
 namespace sunbeam::inline v1 {
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "runtime/src/lookup/textured_grid.h"
-#include "runtime/src/lookup/textured_media.h"
+#include "runtime/src/rest/textured_grid.h"
+#include "runtime/src/rest/textured_media.h"
 
 namespace sunbeam::inline v1 {
 

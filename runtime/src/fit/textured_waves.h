@@ -7,7 +7,7 @@
 
 #include "runtime/src/film/film_spectrum.h"
 #include "runtime/src/fit/wave_field.h"
-#include "runtime/src/lookup/textured_grid.h"
+#include "runtime/src/rest/textured_grid.h"
 
 namespace sunbeam::inline v1 {
 

@@ -1,6 +1,6 @@
 #include "runtime/src/lookup/bound_table.h"
 
-#include "runtime/src/fit/bound_sampling.h"
+#include "runtime/src/lookup/bound_sampling.h"
 
 namespace sunbeam::inline v1 {
 namespace {

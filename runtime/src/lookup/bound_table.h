@@ -6,9 +6,9 @@
 #include <span>
 
 #include "runtime/src/lookup/bound_values.h"
-#include "runtime/src/lookup/cosine_rows.h"
-#include "runtime/src/lookup/facet_cells.h"
-#include "runtime/src/lookup/facets.h"
+#include "runtime/src/sampling/cosine_rows.h"
+#include "runtime/src/sampling/facet_cells.h"
+#include "runtime/src/sampling/facets.h"
 #include "sunbeam/table_bsdf.h"
 
 namespace sunbeam::inline v1 {

@@ -6,8 +6,8 @@
 #include <variant>
 #include <vector>
 
-#include "runtime/src/lookup/dense_rest.h"
-#include "runtime/src/lookup/separable.h"
+#include "runtime/src/rest/dense_rest.h"
+#include "runtime/src/rest/separable.h"
 #include "sunbeam/table.h"
 
 namespace sunbeam::inline v1 {

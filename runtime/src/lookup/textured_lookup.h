@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "runtime/src/fit/dense_albedos.h"
-#include "runtime/src/lookup/dense_rest.h"
-#include "runtime/src/lookup/facets.h"
 #include "runtime/src/lookup/textured_rest.h"
+#include "runtime/src/rest/dense_rest.h"
+#include "runtime/src/sampling/facets.h"
 #include "sunbeam/textured_table.h"
 
 namespace sunbeam::inline v1 {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "runtime/src/base/exp4.h"
-#include "runtime/src/lookup/textured_grid.h"
-#include "runtime/src/lookup/textured_media.h"
+#include "runtime/src/rest/textured_grid.h"
+#include "runtime/src/rest/textured_media.h"
 #include "sunbeam/detail/textured_point.h"
 
 namespace sunbeam::inline v1 {

@@ -1,9 +1,9 @@
 // Azimuths in single floats.
-#include "runtime/src/base/float_turn.h"
+#include "runtime/src/sampling/float_turn.h"
 
 #include <gtest/gtest.h>
 
-#include "runtime/src/lookup/facets.h"
+#include "runtime/src/sampling/facets.h"
 
 namespace sunbeam {
 namespace {

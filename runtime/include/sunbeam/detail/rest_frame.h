@@ -1,5 +1,5 @@
 // The closed frame that the remainder of a dense table stands in (sunbeam/table.h), at one parameter point.
-// The bake encodes (bake/dense/nodes.h) and look-ups decode (runtime/src/lookup/dense_rest.h). Both are here
+// The bake encodes (bake/dense/nodes.h) and look-ups decode (runtime/src/rest/dense_rest.h). Both are here
 // since each is the inverse of the other.
 #pragma once
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "runtime/src/lookup/bound_values.h"
-#include "runtime/src/lookup/cosine_rows.h"
-#include "runtime/src/lookup/facet_cells.h"
+#include "runtime/src/sampling/cosine_rows.h"
+#include "runtime/src/sampling/facet_cells.h"
 
 namespace sunbeam::inline v1 {
 

@@ -1,4 +1,4 @@
-#include "runtime/src/lookup/textured_grid.h"
+#include "runtime/src/rest/textured_grid.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "runtime/src/lookup/textured_media.h"
+#include "runtime/src/rest/textured_media.h"
 
 namespace sunbeam::inline v1 {
 namespace {

@@ -1,4 +1,4 @@
-#include "runtime/src/lookup/dense_rest.h"
+#include "runtime/src/rest/dense_rest.h"
 
 namespace sunbeam::inline v1 {
 namespace {

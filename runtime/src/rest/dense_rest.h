@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "runtime/src/lookup/dense_angles.h"
+#include "runtime/src/rest/dense_angles.h"
 #include "sunbeam/detail/rest_frame.h"
 #include "sunbeam/table.h"
 

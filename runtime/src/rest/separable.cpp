@@ -1,4 +1,4 @@
-#include "runtime/src/lookup/separable.h"
+#include "runtime/src/rest/separable.h"
 
 #include "runtime/src/base/compiler.h"
 

@@ -1,4 +1,4 @@
-#include "runtime/src/fit/bound_sampling.h"
+#include "runtime/src/lookup/bound_sampling.h"
 
 #include "sunbeam/detail/ggx.h"
 

@@ -8,7 +8,7 @@
 #pragma once
 
 #include "runtime/src/base/color4.h"
-#include "runtime/src/base/float_turn.h"
+#include "runtime/src/sampling/float_turn.h"
 #include "sunbeam/core/rng.h"
 #include "sunbeam/detail/roughness.h"
 

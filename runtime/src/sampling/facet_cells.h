@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "runtime/src/base/alias_table.h"
-#include "runtime/src/lookup/facets.h"
+#include "runtime/src/sampling/alias_table.h"
+#include "runtime/src/sampling/facets.h"
 
 namespace sunbeam::inline v1 {
 

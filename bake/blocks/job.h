@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sunbeam/table_io.h"
+#include "sunbeam/detail/table_view.h"
 
 namespace sunbeam {
 
@@ -54,10 +54,8 @@ class BakeJob {
   // Thread safe, beside other tasks of its group.
   virtual Block run(std::size_t task) const = 0;
 
-  // Made of all blocks. A dense table is an outline (table_io.h), and cells() has its values; the blocks must
-  // outlive them.
-  virtual Table table(const Blocks& blocks) const = 0;
-  virtual std::unique_ptr<DenseCells> cells(const Blocks& /*blocks*/) const { return nullptr; }
+  // Made of all blocks, which must outlive it, as the job must.
+  virtual TableView table(const Blocks& blocks) const = 0;
 };
 
 // In the order of tasks, the whole of which `job` counts.

@@ -4,7 +4,6 @@
 
 #include "bake/base/parallel_tasks.h"
 #include "bake/base/running_mean.h"
-#include "bake/dense/table_around.h"
 #include "bake/live/adding_doubling/slab_solver.h"
 #include "bake/live/exact/exact.h"
 #include "bake/live/pfmc.h"
@@ -70,22 +69,17 @@ WalkedRest walk_rest(const Pfmc& model, Technique technique, const Vec3& wi, con
 
 class PointCheck {
  public:
-  // `textured` is that of `table`, unless the table's values are in `cells`.
-  PointCheck(const Table& table, const DenseCells* cells, const std::optional<TexturedTable>& textured,
-             const Spectrum& spectrum, const VerifySettings& settings, std::uint64_t index)
+  // `textured` is that of `table`, if that is in memory.
+  PointCheck(const TableView& table, const std::optional<TexturedTable>& textured, const Spectrum& spectrum,
+             const VerifySettings& settings, std::uint64_t index)
       : settings_(settings), rng_(settings.seed, index), textured_(textured) {
     point_.parameters = {draw(table.parameter_axis(0), rng_), draw(table.parameter_axis(1), rng_),
                          draw(table.parameter_axis(2), rng_)};
     point_.cos_i = lerp(rng_.uniform(), std::cos(89 * kPi / 180), 1);
-    if (table.symmetry == Symmetry::anisotropic) point_.phi_i = 2 * kPi * rng_.uniform();
+    if (table.head().symmetry == Symmetry::anisotropic) point_.phi_i = 2 * kPi * rng_.uniform();
     wi_ = direction_from_cosine(point_.cos_i, point_.phi_i);
-    if (cells) {
-      const Table around = table_around(table, *cells, point_.parameters);
-      textured_.emplace(around, Arithmetic::reproducible);
-      bind(around);
-    } else {
-      bind(table);
-    }
+    std::optional<Table> room;
+    bind(table.around(point_.parameters, room));
     wavelengths_ = spectrum.wavelengths(bsdf_->material());
     model_.emplace(bsdf_->material(), wavelengths_);
   }
@@ -104,6 +98,7 @@ class PointCheck {
   // What a table states of itself must not depend on the processor.
   void bind(const Table& table) {
     bsdf_.emplace(table, point_.parameters, OutsideGrid::refuse, Arithmetic::reproducible);
+    if (!textured_) textured_.emplace(table, Arithmetic::reproducible);
   }
 
   // The number of walks follows the floor that a pilot expects, not that of the runs themselves: stopping at
@@ -234,18 +229,17 @@ VerifySettings verify_settings_of(const Recipe& recipe) {
   return settings;
 }
 
-namespace {
-
-VerifyReport verify(const Table& table, const DenseCells* cells, const VerifySettings& settings) {
-  estimator_for_truth(settings.truth, table.material);  // throws if it has none
-  const Spectrum spectrum = parse_stored_recipe(table.info.at("recipe"), "recipe of the table").spectrum;
+VerifyReport verify(const TableView& table, const VerifySettings& settings) {
+  estimator_for_truth(settings.truth, table.head().material);  // throws if it has none
+  const Spectrum spectrum =
+      parse_stored_recipe(table.head().info.at("recipe"), "recipe of the table").spectrum;
   VerifyReport report;
   report.truth = name_of(settings.truth);
   report.points.resize(static_cast<std::size_t>(settings.points));
   std::optional<TexturedTable> textured;
-  if (!cells) textured.emplace(table, Arithmetic::reproducible);
+  if (table.is_in_memory()) textured.emplace(table.head(), Arithmetic::reproducible);
   run_parallel_tasks(report.points.size(), settings.threads, settings.on_progress, [&](std::size_t k) {
-    report.points[k] = PointCheck(table, cells, textured, spectrum, settings, k).run();
+    report.points[k] = PointCheck(table, textured, spectrum, settings, k).run();
   });
   report.error = quantiles(report.points, &VerifyPoint::error);
   report.textured_error = quantiles(report.points, &VerifyPoint::textured_error);
@@ -255,16 +249,6 @@ VerifyReport verify(const Table& table, const DenseCells* cells, const VerifySet
   report.energy_max = quantiles(report.points, &VerifyPoint::albedo).max;
   report.reciprocity_max = quantiles(report.points, &VerifyPoint::reciprocity).max;
   return report;
-}
-
-}  // namespace
-
-VerifyReport verify(const Table& table, const VerifySettings& settings) {
-  return verify(table, nullptr, settings);
-}
-
-VerifyReport verify(const Table& outline, const DenseCells& cells, const VerifySettings& settings) {
-  return verify(outline, &cells, settings);
 }
 
 bool within_tolerance(const VerifyReport& report, const VerifySettings& settings) {

@@ -17,8 +17,8 @@
 
 #include "bake/live/estimator.h"
 #include "bake/recipe/recipe.h"
+#include "sunbeam/detail/table_view.h"
 #include "sunbeam/table.h"
-#include "sunbeam/table_io.h"
 
 namespace sunbeam {
 
@@ -67,9 +67,7 @@ VerifySettings verify_settings_of(const Recipe& recipe);
 
 // Throws Error if the recipe in the table cannot be read, or naming the key if truth is exact and the
 // material has no exact evaluator.
-VerifyReport verify(const Table& table, const VerifySettings& settings);
-// Of a table that is not in memory (sunbeam/table_io.h): the same figures.
-VerifyReport verify(const Table& outline, const DenseCells& cells, const VerifySettings& settings);
+VerifyReport verify(const TableView& table, const VerifySettings& settings);
 
 // True if median and p99 of the error are within the tolerances.
 bool within_tolerance(const VerifyReport& report, const VerifySettings& settings);

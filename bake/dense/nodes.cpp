@@ -58,13 +58,13 @@ DenseNodes::DenseNodes(const Recipe& recipe)
       size_(recipe.grid[0].size() * recipe.grid[1].size() * recipe.grid[2].size()),
       equal_cells_(symmetry_of(recipe) == Symmetry::isotropic, static_cast<std::size_t>(recipe.table.angles),
                    static_cast<std::size_t>(recipe.table.azimuths)) {
-  outline_.material = recipe.material;
-  outline_.symmetry = symmetry_of(recipe);
-  bake_film(recipe, outline_);
-  frame_.emplace(recipe.material, outline_.first_visit);
+  head_.material = recipe.material;
+  head_.symmetry = symmetry_of(recipe);
+  bake_film(recipe, head_);
+  frame_.emplace(recipe.material, head_.first_visit);
   const auto axes = rest_axes(recipe);
-  outline_.remainder = NdArray::outline("remainder", axes, recipe.table.precision);
-  outline_.rest_stderr = NdArray::outline("rest_stderr", axes, Precision::single_float, 1);
+  remainder_ = ArrayShape("remainder", axes, recipe.table.precision);
+  rest_stderr_ = ArrayShape("rest_stderr", axes, Precision::single_float, 1);
   wi_ = directions(axes[3], axes[4]);
   wo_ = directions(axes[5], axes[6]);
 }
@@ -97,7 +97,7 @@ void DenseNodes::frame(std::size_t node, Rows& rest) const {
   const Parameters p = parameters(node);
   const RestFrame frame = frame_->over(p.applied_to(recipe_.material));
   const auto transmittance = [&](double cosine) {
-    return outline_.transmittance({p.film_thickness_nm, p.base_ior, cosine});
+    return head_.transmittance({p.film_thickness_nm, p.base_ior, cosine});
   };
   std::vector<Rgb> t_o;
   for (std::size_t o = 0; o < wo_.size(); ++o)  // the azimuths of a cosine share it

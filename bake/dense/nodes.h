@@ -25,12 +25,14 @@ class DenseNodes {
   // Directions of a row and of its places; cosines of both, azimuths of wo.
   const std::vector<Vec3>& wi() const { return wi_; }
   const std::vector<Vec3>& wo() const { return wo_; }
-  const std::vector<double>& cosines() const { return outline_.remainder.axes()[3].nodes; }
-  const std::vector<double>& azimuths() const { return outline_.remainder.axes()[6].nodes; }
+  const std::vector<double>& cosines() const { return remainder_.axes()[3].nodes; }
+  const std::vector<double>& azimuths() const { return remainder_.axes()[6].nodes; }
   std::size_t cells() const { return wi_.size() * wo_.size(); }
 
-  // Everything but `info` and the values of remainder and rest_stderr.
-  const Table& outline() const { return outline_; }
+  // The table without `info`, `remainder` and `rest_stderr`, and the shapes of these two arrays.
+  const Table& head() const { return head_; }
+  const ArrayShape& remainder_shape() const { return remainder_; }
+  const ArrayShape& rest_stderr_shape() const { return rest_stderr_; }
 
   // What the arrays hold of a node, from its rest and from the rest's standard error.
   std::vector<float> remainder(std::size_t node, Rows rest) const;
@@ -40,7 +42,8 @@ class DenseNodes {
   void frame(std::size_t node, Rows& rest) const;
 
   const Recipe& recipe_;
-  Table outline_;
+  Table head_;
+  ArrayShape remainder_, rest_stderr_;
   std::vector<Vec3> wi_, wo_;
   std::size_t size_;
   EqualCells equal_cells_;

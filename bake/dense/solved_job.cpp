@@ -32,12 +32,12 @@ class Order {
 };
 
 // Blocks hold the remainder of their nodes; solutions have no noise.
-class SolvedCells : public DenseCells {
+class SolvedValues {
  public:
-  SolvedCells(const DenseNodes& nodes, const Order& order, Precision precision, const Blocks& blocks)
+  SolvedValues(const DenseNodes& nodes, const Order& order, Precision precision, const Blocks& blocks)
       : nodes_(nodes), order_(order), precision_(precision), blocks_(blocks) {}
 
-  std::vector<float> remainder(std::size_t first, std::size_t count) const override {
+  std::vector<float> remainder(std::size_t first, std::size_t count) const {
     const std::size_t node_values = 3 * nodes_.cells();
     std::vector<float> result;
     for (std::size_t node = first; node < first + count;) {
@@ -50,7 +50,7 @@ class SolvedCells : public DenseCells {
     }
     return result;
   }
-  std::vector<float> rest_stderr(std::size_t, std::size_t count) const override {
+  std::vector<float> rest_stderr(std::size_t, std::size_t count) const {
     return std::vector<float>(count * nodes_.cells());
   }
 
@@ -112,13 +112,13 @@ class SolvedJob : public BakeJob {
     return block;
   }
 
-  Table table(const Blocks& blocks) const override {
-    Table table = nodes_.outline();
-    table.info = info_of(recipe_, Encoding::dense, seed_, total_walks(*this, blocks), "adding-doubling");
-    return table;
-  }
-  std::unique_ptr<DenseCells> cells(const Blocks& blocks) const override {
-    return std::make_unique<SolvedCells>(nodes_, order_, recipe_.table.precision, blocks);
+  TableView table(const Blocks& blocks) const override {
+    Table head = nodes_.head();
+    head.info = info_of(recipe_, Encoding::dense, seed_, total_walks(*this, blocks), "adding-doubling");
+    const auto values = std::make_shared<SolvedValues>(nodes_, order_, recipe_.table.precision, blocks);
+    return {std::move(head),
+            {nodes_.remainder_shape(), [=](auto... nodes) { return values->remainder(nodes...); }},
+            {nodes_.rest_stderr_shape(), [=](auto... nodes) { return values->rest_stderr(nodes...); }}};
   }
 
  private:

@@ -61,17 +61,17 @@ class RowWalks {
   std::uint64_t walks_ = 0;
 };
 
-class WalkedCells : public DenseCells {
+class WalkedValues {
  public:
-  WalkedCells(const DenseNodes& nodes, const Blocks& blocks) : nodes_(nodes), blocks_(blocks) {}
+  WalkedValues(const DenseNodes& nodes, const Blocks& blocks) : nodes_(nodes), blocks_(blocks) {}
 
-  std::vector<float> remainder(std::size_t first, std::size_t count) const override {
+  std::vector<float> remainder(std::size_t first, std::size_t count) const {
     std::vector<float> result;
     for (std::size_t node = first; node < first + count; ++node)
       std::ranges::copy(nodes_.remainder(node, rows(node, kRest)), std::back_inserter(result));
     return result;
   }
-  std::vector<float> rest_stderr(std::size_t first, std::size_t count) const override {
+  std::vector<float> rest_stderr(std::size_t first, std::size_t count) const {
     std::vector<float> result;
     for (std::size_t node = first; node < first + count; ++node)
       std::ranges::copy(nodes_.rest_stderr(rows(node, kError)), std::back_inserter(result));
@@ -123,14 +123,14 @@ class WalkedJob : public BakeJob {
     return walks.block();
   }
 
-  Table table(const Blocks& blocks) const override {
-    Table table = nodes_.outline();
-    table.info = info_of(recipe_, Encoding::dense, seed_, total_walks(*this, blocks),
-                         name_of(recipe_.accuracy.estimator));
-    return table;
-  }
-  std::unique_ptr<DenseCells> cells(const Blocks& blocks) const override {
-    return std::make_unique<WalkedCells>(nodes_, blocks);
+  TableView table(const Blocks& blocks) const override {
+    Table head = nodes_.head();
+    head.info = info_of(recipe_, Encoding::dense, seed_, total_walks(*this, blocks),
+                        name_of(recipe_.accuracy.estimator));
+    const auto values = std::make_shared<WalkedValues>(nodes_, blocks);
+    return {std::move(head),
+            {nodes_.remainder_shape(), [=](auto... nodes) { return values->remainder(nodes...); }},
+            {nodes_.rest_stderr_shape(), [=](auto... nodes) { return values->rest_stderr(nodes...); }}};
   }
 
  private:

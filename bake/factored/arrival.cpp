@@ -15,7 +15,7 @@ constexpr double kLeastArrival = 1e-30;  // where it is divided by or its logari
 std::vector<double> arrivals(const SharedInputs& bake, const FilmLegs& legs, FringePowers& powers,
                              std::size_t direction, std::size_t strata, std::size_t replicate,
                              std::uint64_t& count) {
-  const Axis& depths = bake.outline.arrival.axes()[1];
+  const Axis& depths = bake.shapes.arrival.axes()[1];
   const std::size_t orders = powers.transmittance.size();
   std::vector<double> sums(depths.size() * orders);
   legs.visit_arrivals(
@@ -41,7 +41,7 @@ double worst_error(const Replicates& a) {
 // A with as many strata as its noise asks for.
 Replicates known_arrivals(const SharedInputs& bake, const Material& material, std::size_t direction,
                           BlockSummary& summary) {
-  const NdArray& array = bake.outline.arrival;
+  const ArrayShape& array = bake.shapes.arrival;
   const FilmLegs legs(material);
   FringePowers powers(ThinFilm::of(material), array.axes()[2],
                       fringe_order(material, bake.directions[direction].z));
@@ -58,7 +58,7 @@ Replicates known_arrivals(const SharedInputs& bake, const Material& material, st
 
 Block walk_arrival(const SharedInputs& bake, std::size_t ior, std::size_t direction) {
   const Material material = bake.material_at(ior);
-  const std::vector<Axis>& axes = bake.outline.arrival.axes();
+  const std::vector<Axis>& axes = bake.shapes.arrival.axes();
   Block block;
   const Replicates a = known_arrivals(bake, material, direction, block.summary);
   const double m = arrival_cosine(material, bake.directions[direction].z);

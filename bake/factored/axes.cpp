@@ -60,14 +60,14 @@ Axis albedos_axis(const Wavelengths& w) {
   return cubic(axis);
 }
 
-NdArray outlined_array(const Recipe& recipe, const char* name, const std::vector<Axis>& axes,
-                       Precision precision) {
+ArrayShape shape_of(const Recipe& recipe, const char* name, const std::vector<Axis>& axes,
+                    Precision precision) {
   double cells = 1;
   for (const Axis& axis : axes) cells *= static_cast<double>(axis.size());
   if (cells > kMostCells)
     throw Error(fmt::format("{}: [grid] and [table] ask for {:.3g} cells of '{}'; allowed: up to {:.3g}",
                             recipe.name, cells, name, kMostCells));
-  return NdArray::outline(name, axes, precision, 1);
+  return {name, axes, precision, 1};
 }
 
 std::vector<Axis> joined(std::vector<Axis> axes, const std::vector<Axis>& more) {
@@ -75,27 +75,25 @@ std::vector<Axis> joined(std::vector<Axis> axes, const std::vector<Axis>& more) 
   return axes;
 }
 
-NdArray arrival_outline(const Recipe& recipe, const Wavelengths& w) {
+ArrayShape arrival_shape(const Recipe& recipe, const Wavelengths& w) {
   const Axis one_depth{"optical_depth", "1", {0}, 3};
   const bool straight = recipe.material.transmission == Transmission::straight;
   const std::vector<Axis> axes{cubic(recipe.grid[1]), straight ? one_depth : depths_axis(recipe, w),
                                orders_axis(recipe, w, 0, kNodesPerFringe)};
-  return outlined_array(recipe, "arrival", joined(axes, direction_axes(recipe, "")), recipe.table.precision);
+  return shape_of(recipe, "arrival", joined(axes, direction_axes(recipe, "")), recipe.table.precision);
 }
 
-NdArray returned_outline(const Recipe& recipe, const Wavelengths& w) {
-  return outlined_array(
-      recipe, "returned",
-      {cubic(recipe.grid[1]), depths_axis(recipe, w), orders_axis(recipe, w, 1, kNodesPerFringe)},
-      Precision::single_float);
+ArrayShape returned_shape(const Recipe& recipe, const Wavelengths& w) {
+  return shape_of(recipe, "returned",
+                  {cubic(recipe.grid[1]), depths_axis(recipe, w), orders_axis(recipe, w, 1, kNodesPerFringe)},
+                  Precision::single_float);
 }
 
-NdArray exchange_outline(const Recipe& recipe, const Wavelengths& w) {
+ArrayShape exchange_shape(const Recipe& recipe, const Wavelengths& w) {
   const std::vector<Axis> axes{cubic(recipe.grid[1]), depths_axis(recipe, w), albedos_axis(w),
                                orders_axis(recipe, w, 1, exchange_nodes_per_fringe(w))};
   const auto with_wi = joined(axes, direction_axes(recipe, "_i"));
-  return outlined_array(recipe, "exchange", joined(with_wi, direction_axes(recipe, "_o")),
-                        recipe.table.precision);
+  return shape_of(recipe, "exchange", joined(with_wi, direction_axes(recipe, "_o")), recipe.table.precision);
 }
 
 }  // namespace
@@ -108,16 +106,16 @@ std::vector<Axis> direction_axes(const Recipe& recipe, const std::string& suffix
   return {cubic({"cos_theta" + suffix, "1", cosines, 2}), cubic(phi)};
 }
 
-Factors factor_axes(const Recipe& recipe) {
-  Factors factors;
+FactorShapes factor_shapes(const Recipe& recipe) {
+  FactorShapes factors;
   factors.grid = recipe.grid;
   factors.wavelengths = recipe.spectrum.wavelengths(recipe.material);
   const Wavelengths& w = factors.wavelengths;
-  if (!recipe.material.is_smooth()) factors.arrival = arrival_outline(recipe, w);
+  if (!recipe.material.is_smooth()) factors.arrival = arrival_shape(recipe, w);
   if (recipe.material.absorption_path == AbsorptionPath::sum)
-    factors.returned = returned_outline(recipe, w);
+    factors.returned = returned_shape(recipe, w);
   else
-    factors.exchange = exchange_outline(recipe, w);
+    factors.exchange = exchange_shape(recipe, w);
   return factors;
 }
 

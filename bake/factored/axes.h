@@ -7,9 +7,15 @@
 
 namespace sunbeam {
 
-// Axes of the recipe's factored table: its arrays as outlines. Throws Error if it would be larger than a
-// machine can hold.
-Factors factor_axes(const Recipe& recipe);
+// Factors without the values of their arrays; members as there.
+struct FactorShapes {
+  std::vector<Axis> grid;
+  Wavelengths wavelengths;
+  ArrayShape arrival, returned, exchange;
+};
+
+// Throws Error if the recipe's factored table would be larger than a machine can hold.
+FactorShapes factor_shapes(const Recipe& recipe);
 
 // Directions (cos_theta, phi) of an array of the recipe; `suffix` tells two of them apart.
 std::vector<Axis> direction_axes(const Recipe& recipe, const std::string& suffix);

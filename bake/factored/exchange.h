@@ -36,7 +36,7 @@ class ExchangeWalks {
   std::vector<ExchangeSolver::Arrived> arrived(const Material& material, const ExchangeSolver& solver,
                                                const std::vector<std::vector<double>>& arrivals,
                                                std::size_t order, std::size_t orders) const;
-  const std::vector<Axis>& axes() const { return bake_.outline.exchange.axes(); }
+  const std::vector<Axis>& axes() const { return bake_.shapes.exchange.axes(); }
 
   const SharedInputs& bake_;
   std::vector<ExchangeSolver> solvers_;  // one an optical depth

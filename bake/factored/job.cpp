@@ -26,14 +26,13 @@ class FactoredJob : public BakeJob {
   double cost(std::size_t task) const override {
     constexpr double kSecondsPerOperation = 5e-10, kLegs = kReplicates * 64 * 64,
                      kNodes = ExchangeSolver::kNodes;
-    const Factors& outline = bake_.outline;
+    const FactorShapes& shapes = bake_.shapes;
     const auto ends = static_cast<double>(bake_.directions.size());
     if (task < arrival_tasks_)
-      return kSecondsPerOperation * kLegs * static_cast<double>(outline.arrival.stride(0)) / ends;
-    if (!exchange_)
-      return kSecondsPerOperation * 16 * kLegs * static_cast<double>(outline.returned.stride(0));
-    const auto depths = static_cast<double>(outline.exchange.axes()[1].size());
-    const auto albedos = static_cast<double>(outline.exchange.axes()[2].size());
+      return kSecondsPerOperation * kLegs * static_cast<double>(shapes.arrival.stride(0)) / ends;
+    if (!exchange_) return kSecondsPerOperation * 16 * kLegs * static_cast<double>(shapes.returned.stride(0));
+    const auto depths = static_cast<double>(shapes.exchange.axes()[1].size());
+    const auto albedos = static_cast<double>(shapes.exchange.axes()[2].size());
     const double solve = square(kNodes) * (kNodes + ends) + square(ends) * kNodes;
     return kSecondsPerOperation * static_cast<double>(exchange_->orders_of(later(task).part).size()) *
            ((32 + ends) * kLegs + depths * albedos * solve);
@@ -46,15 +45,14 @@ class FactoredJob : public BakeJob {
     return exchange_ ? exchange_->run(ior, part) : walk_returned(bake_, ior);
   }
 
-  Table table(const Blocks& blocks) const override {
+  TableView table(const Blocks& blocks) const override {
     Table table;
     table.material = bake_.recipe.material;
     table.symmetry = symmetry_of(bake_.recipe);
-    table.factors = bake_.outline;
+    const FactorShapes& shapes = bake_.shapes;
     Factors& factors = table.factors;
-    for (NdArray* array : {&factors.arrival, &factors.returned, &factors.exchange})
-      if (array->is_outline())
-        *array = NdArray(array->name(), array->axes(), array->precision(), array->channels());
+    factors = {shapes.grid, shapes.wavelengths, NdArray(shapes.arrival), NdArray(shapes.returned),
+               NdArray(shapes.exchange)};
     const double variance = fill(blocks, factors);
     table.info =
         info_of(bake_.recipe, Encoding::factored, bake_.seed, total_walks(*this, blocks), "pfmc-shared-legs");

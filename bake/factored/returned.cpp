@@ -46,10 +46,10 @@ double worst_error(const Replicates& returned, double kd) {
 
 std::size_t strata_of_returns(const SharedInputs& bake, const Material& material, const FilmLegs& legs,
                               BlockSummary& summary) {
-  const Factors& outline = bake.outline;
-  const Axis& orders = bake.has_exchange() ? outline.exchange.axes()[3] : outline.returned.axes()[2];
+  const FactorShapes& shapes = bake.shapes;
+  const Axis& orders = bake.has_exchange() ? shapes.exchange.axes()[3] : shapes.returned.axes()[2];
   FringePowers powers(ThinFilm::below(material), thinned(orders), fringe_order(material, 1));
-  const std::vector<double>& albedos = outline.wavelengths.albedo;
+  const std::vector<double>& albedos = shapes.wavelengths.albedo;
   const double kd = *std::max_element(albedos.begin(), albedos.end());
   const Strata range = material.is_smooth() ? kSmoothUpStrata : kUpStrata;
   for (std::size_t up = range.least;; up *= 2) {
@@ -59,7 +59,7 @@ std::size_t strata_of_returns(const SharedInputs& bake, const Material& material
 }
 
 Block walk_returned(const SharedInputs& bake, std::size_t ior) {
-  const std::vector<Axis>& axes = bake.outline.returned.axes();
+  const std::vector<Axis>& axes = bake.shapes.returned.axes();
   const std::vector<double>& depths = axes[1].nodes;
   const std::size_t orders = axes[2].size();
   std::vector<double> sum(depths.size() * orders);

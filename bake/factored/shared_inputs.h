@@ -10,13 +10,13 @@ namespace sunbeam {
 // `recipe` must outlive it.
 struct SharedInputs {
   SharedInputs(const Recipe& recipe, std::uint64_t seed)
-      : recipe(recipe), seed(seed), outline(factor_axes(recipe)) {
+      : recipe(recipe), seed(seed), shapes(factor_shapes(recipe)) {
     const auto axes = direction_axes(recipe, "");
     for (const double c : axes[0].nodes)
       for (const double phi : axes[1].nodes) directions.push_back(direction_from_cosine(c, phi));
   }
 
-  bool has_exchange() const { return !outline.exchange.empty(); }
+  bool has_exchange() const { return !shapes.exchange.empty(); }
   std::size_t iors() const { return recipe.grid[1].size(); }
 
   Material material_at(std::size_t ior) const {
@@ -33,7 +33,7 @@ struct SharedInputs {
 
   const Recipe& recipe;
   std::uint64_t seed;
-  Factors outline;               // arrays without values
+  FactorShapes shapes;
   std::vector<Vec3> directions;  // nodes, phi fastest
 };
 

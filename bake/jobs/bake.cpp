@@ -20,7 +20,7 @@ double cells_of(const std::vector<Axis>& axes) {
   return cells;
 }
 
-double bytes_of(const NdArray& array) {
+double bytes_of(const ArrayShape& array) {
   return static_cast<double>(array.cells() * array.channels() *
                              (array.precision() == Precision::half_float ? 2 : 4));
 }
@@ -29,7 +29,7 @@ double bytes_of(const NdArray& array) {
 
 double bytes_of(const Recipe& recipe, Encoding encoding) {
   if (encoding == Encoding::factored) {
-    const Factors factors = factor_axes(recipe);
+    const FactorShapes factors = factor_shapes(recipe);
     return bytes_of(factors.arrival) + bytes_of(factors.returned) + bytes_of(factors.exchange);
   }
   const double value = recipe.table.precision == Precision::half_float ? 2 : 4;
@@ -47,7 +47,7 @@ std::vector<Encoding> encodings_of(const Recipe& recipe) {
 
 void require_reasonable_size(const Recipe& recipe, Encoding encoding) {
   if (encoding == Encoding::factored) {
-    factor_axes(recipe);
+    factor_shapes(recipe);
     return;
   }
   constexpr double kMostCells = 1u << 31;  // three halves each: 13 GB
@@ -67,18 +67,6 @@ std::unique_ptr<BakeJob> make_job(const Recipe& recipe, Encoding encoding, std::
   return is_solved(recipe) ? solved_job(recipe, seed) : walked_job(recipe, seed);
 }
 
-Table whole_table(const Table& outline, const DenseCells& cells) {
-  Table table = outline;
-  const auto fill = [](NdArray& array, const std::vector<float>& values) {
-    array = NdArray(array.name(), array.axes(), array.precision(), array.channels());
-    std::copy(values.begin(), values.end(), array.values().begin());
-  };
-  const std::size_t nodes = outline.remainder.cells() / outline.remainder.stride(2);
-  fill(table.remainder, cells.remainder(0, nodes));
-  fill(table.rest_stderr, cells.rest_stderr(0, nodes));
-  return table;
-}
-
 Table bake_table(const Recipe& recipe, Encoding encoding, const BakeSettings& settings) {
   const auto job = make_job(recipe, encoding, settings.seed);
   BlocksInMemory blocks(job->tasks());
@@ -86,9 +74,8 @@ Table bake_table(const Recipe& recipe, Encoding encoding, const BakeSettings& se
   if (settings.on_progress)
     run.on_progress = [&](const BakeProgress& p) { settings.on_progress(p.fraction); };
   run_tasks(*job, {0, job->tasks()}, blocks, run);
-  const Table table = job->table(blocks);
-  const auto cells = job->cells(blocks);
-  return cells ? whole_table(table, *cells) : table;
+  std::optional<Table> room;
+  return job->table(blocks).whole(room);
 }
 
 Table bake_table(const Recipe& recipe, const BakeSettings& settings) {

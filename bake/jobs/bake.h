@@ -21,9 +21,6 @@ double bytes_of(const Recipe& recipe, Encoding encoding);
 // `recipe` must outlive the job.
 std::unique_ptr<BakeJob> make_job(const Recipe& recipe, Encoding encoding, std::uint64_t seed);
 
-// A dense table with its values.
-Table whole_table(const Table& outline, const DenseCells& cells);
-
 struct BakeSettings {
   std::uint64_t seed = 1;
   int threads = 0;                                   // 0: all

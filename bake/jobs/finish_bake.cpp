@@ -1,14 +1,12 @@
 #include "bake/jobs/finish_bake.h"
 
-#include "bake/jobs/bake.h"
-#include "sunbeam/detail/file.h"
 #include "sunbeam/detail/text.h"
 #include "sunbeam/table_vdb.h"
 
 namespace sunbeam {
 
 FinishedBake::FinishedBake(const Recipe& recipe, const BakeJob& job, const Blocks& blocks)
-    : recipe_(recipe), table_(job.table(blocks)), cells_(job.cells(blocks)) {}
+    : recipe_(recipe), table_(job.table(blocks)) {}
 
 VerifyReport FinishedBake::measure_error(int points, int threads,
                                          std::function<void(double fraction)> on_progress) {
@@ -16,17 +14,13 @@ VerifyReport FinishedBake::measure_error(int points, int threads,
   settings.points = points;
   settings.threads = threads;
   settings.on_progress = std::move(on_progress);
-  VerifyReport report = cells_ ? verify(table_, *cells_, settings) : verify(table_, settings);
-  for (const auto& [name, value] : figures(report)) table_.info["error." + name] = to_text(value);
-  table_.info["error.truth"] = report.truth;
+  VerifyReport report = verify(table_, settings);
+  std::map<std::string, std::string> error{{"error.truth", report.truth}};
+  for (const auto& [name, value] : figures(report)) error["error." + name] = to_text(value);
+  table_.add_info(error);
   return report;
 }
 
-void FinishedBake::save(const std::string& path) const {
-  if (cells_ && extension(path) == ".exr")
-    save_table_exr(table_, *cells_, path);
-  else
-    save_table(cells_ ? whole_table(table_, *cells_) : table_, path);
-}
+void FinishedBake::save(const std::string& path) const { save_table(table_, path); }
 
 }  // namespace sunbeam

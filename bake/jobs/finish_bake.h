@@ -22,12 +22,11 @@ class FinishedBake {
   // .exr: in memory for some nodes only.
   void save(const std::string& path) const;
 
-  const std::map<std::string, std::string>& info() const { return table_.info; }
+  const std::map<std::string, std::string>& info() const { return table_.head().info; }
 
  private:
   const Recipe& recipe_;
-  Table table_;
-  std::unique_ptr<DenseCells> cells_;
+  TableView table_;
 };
 
 }  // namespace sunbeam

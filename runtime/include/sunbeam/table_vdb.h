@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "sunbeam/table.h"
+#include "sunbeam/table_io.h"
 
 namespace sunbeam::inline v1 {
 
@@ -15,7 +15,7 @@ void save_table_vdb(const Table& table, const std::string& path);
 
 // Either form, by the extension of the path.
 Table load_table(const std::string& path);
-void save_table(const Table& table, const std::string& path);
+void save_table(const TableView& table, const std::string& path);
 std::string table_bytes(const Table& table, const std::string& path);
 // Throws Error unless the extension is one of the two.
 void require_table_extension(const std::string& path);

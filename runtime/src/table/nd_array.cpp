@@ -29,37 +29,23 @@ float round_to(Precision precision, double value) {
   return rounded + 0.0f;  // -0 becomes 0
 }
 
-NdArray NdArray::outline(std::string name, std::vector<Axis> axes, Precision precision,
-                         std::size_t channels) {
-  NdArray array;
-  array.name_ = std::move(name);
-  array.axes_ = std::move(axes);
-  array.precision_ = precision;
-  array.channels_ = channels;
-  array.cells_ = 1;
-  if (array.axes_.empty() || array.axes_.size() > kMaxRank)
-    throw Error("array '" + array.name_ + "': has " + std::to_string(array.axes_.size()) +
-                " axes; allowed: 1 to 8");
-  for (std::size_t k = array.axes_.size(); k-- > 0;) {
-    const Axis& axis = array.axes_[k];
+ArrayShape::ArrayShape(std::string name, std::vector<Axis> axes, Precision precision, std::size_t channels)
+    : name_(std::move(name)), axes_(std::move(axes)), precision_(precision), channels_(channels), cells_(1) {
+  if (axes_.empty() || axes_.size() > kMaxRank)
+    throw Error("array '" + name_ + "': has " + std::to_string(axes_.size()) + " axes; allowed: 1 to 8");
+  for (std::size_t k = axes_.size(); k-- > 0;) {
+    const Axis& axis = axes_[k];
     const std::string defect = axis.defect();
-    if (!defect.empty()) throw Error("array '" + array.name_ + "': axis '" + axis.name + "' " + defect);
-    array.strides_[k] = array.cells_;
-    if (axis.size() > kMaxCells / array.cells_)
-      throw Error("array '" + array.name_ + "': has more than 2^32 cells");
-    array.cells_ *= axis.size();
+    if (!defect.empty()) throw Error("array '" + name_ + "': axis '" + axis.name + "' " + defect);
+    strides_[k] = cells_;
+    if (axis.size() > kMaxCells / cells_) throw Error("array '" + name_ + "': has more than 2^32 cells");
+    cells_ *= axis.size();
   }
-  return array;
-}
-
-NdArray::NdArray(std::string name, std::vector<Axis> axes, Precision precision, std::size_t channels)
-    : NdArray(outline(std::move(name), std::move(axes), precision, channels)) {
-  values_.resize(channels_ * cells_);
 }
 
 void NdArray::set(std::size_t cell, const Rgb& value) {
-  for (std::size_t c = 0; c < channels_; ++c)
-    values_[channels_ * cell + c] = round_to(precision_, value[static_cast<int>(c)]);
+  for (std::size_t c = 0; c < channels(); ++c)
+    values_[channels() * cell + c] = round_to(precision(), value[static_cast<int>(c)]);
 }
 
 Rgb NdArray::interpolate(std::span<const double> x) const {
@@ -70,11 +56,11 @@ Rgb NdArray::interpolate(std::span<const double> x) const {
 }
 
 NdArray NdArray::slice(std::span<const double> x) const {
-  NdArray result(name_, {axes_.begin() + static_cast<std::ptrdiff_t>(x.size()), axes_.end()},
-                 Precision::single_float, channels_);
+  NdArray result(name(), {axes().begin() + static_cast<std::ptrdiff_t>(x.size()), axes().end()},
+                 Precision::single_float, channels());
   std::vector<double> sums(result.values_.size());
   auto add = [&](std::size_t offset, double weight) {
-    const float* from = values_.data() + channels_ * offset;
+    const float* from = values_.data() + channels() * offset;
     for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += weight * static_cast<double>(from[k]);
   };
   visit_cells(*this, x, 0, 0, 1, add);

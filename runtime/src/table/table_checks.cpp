@@ -59,10 +59,11 @@ std::string name_of(Symmetry symmetry) {
   return symmetry == Symmetry::isotropic ? "isotropic" : "anisotropic";
 }
 
-void require_finite(const NdArray& array, const DenseCells* cells) {
-  visit_values(array, cells, [&](std::size_t, std::span<const float> values) {
+void require_finite(const ArrayView& array) {
+  array.visit([&](std::span<const float> values) {
     for (const float value : values)
-      if (!std::isfinite(value)) throw Error("array '" + array.name() + "' holds a value that is not finite");
+      if (!std::isfinite(value))
+        throw Error("array '" + array.shape().name() + "' holds a value that is not finite");
   });
 }
 

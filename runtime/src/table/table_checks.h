@@ -11,8 +11,7 @@ namespace sunbeam::inline v1 {
 
 std::string name_of(Symmetry symmetry);
 
-// `cells` has the values of outlines, if there are any.
-void require_finite(const NdArray& array, const DenseCells* cells = nullptr);
+void require_finite(const ArrayView& array);
 
 // The array of that name, if its axes have those names, it has as many channels and its values are finite.
 NdArray checked_array(const TableParts& parts, const std::string& name,

@@ -29,7 +29,7 @@ struct ImageSize {
   int width, height;
 };
 
-ImageSize image_size(const NdArray& array) {
+ImageSize image_size(const ArrayShape& array) {
   const auto& axes = array.axes();
   const std::size_t first_of_row = axes.size() >= 2 ? axes.size() - 2 : 0;
   const std::size_t width = axes[first_of_row].size() * array.stride(first_of_row);
@@ -56,7 +56,7 @@ Imf::FrameBuffer frame_buffer(void* values, Imf::PixelType type, std::size_t val
   return buffer;
 }
 
-Imf::Header part_header(const NdArray& array, const Imath::Box2i& display_window) {
+Imf::Header part_header(const ArrayShape& array, const Imath::Box2i& display_window) {
   const ImageSize size = image_size(array);
   Imf::Header header(display_window, Imath::Box2i({0, 0}, {size.width - 1, size.height - 1}));
   header.setName(array.name());
@@ -82,10 +82,11 @@ void write_rows(Imf::OutputPart& output, Imf::PixelType type, Value* values, std
 }
 
 // Half values go to the library as halves: it converts floats only when reading.
-void write_array(Imf::MultiPartOutputFile& file, int part, const NdArray& array, const DenseCells* cells) {
+void write_array(Imf::MultiPartOutputFile& file, int part, const ArrayView& view) {
+  const ArrayShape& array = view.shape();
   Imf::OutputPart output(file, part);
   const int width = image_size(array).width;
-  visit_values(array, cells, [&](std::size_t, std::span<const float> values) {
+  view.visit([&](std::span<const float> values) {
     if (array.precision() == Precision::half_float) {
       std::vector<Imath::half> halves(values.begin(), values.end());
       write_rows(output, Imf::HALF, halves.data(), halves.size(), array.channels(), width);
@@ -179,27 +180,27 @@ TableParts read_parts(std::string_view bytes, const std::string& name) {
   return parts;
 }
 
-void write_table(Imf::OStream& stream, const Table& table, const DenseCells* cells) {
-  const TableParts parts = to_parts(table, cells);
+void write_table(Imf::OStream& stream, const TableView& table) {
+  const Attributes attributes = attributes_of(table);
+  const std::vector<ArrayView> arrays = table.arrays();
   Imath::Box2i display_window({0, 0}, {0, 0});  // one for all parts, as the format wants it
-  for (const auto& array : parts.arrays) {
-    const ImageSize size = image_size(array);
+  for (const ArrayView& array : arrays) {
+    const ImageSize size = image_size(array.shape());
     display_window.extendBy(Imath::V2i(size.width - 1, size.height - 1));
   }
   std::vector<Imf::Header> headers;
-  for (const auto& array : parts.arrays) headers.push_back(part_header(array, display_window));
-  for (const auto& [key, value] : parts.attributes)
+  for (const ArrayView& array : arrays) headers.push_back(part_header(array.shape(), display_window));
+  for (const auto& [key, value] : attributes)
     headers.front().insert(kAttributePrefix + key, Imf::StringAttribute(value));
   Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()));
-  for (std::size_t k = 0; k < parts.arrays.size(); ++k)
-    write_array(file, static_cast<int>(k), parts.arrays[k], cells);
+  for (std::size_t k = 0; k < arrays.size(); ++k) write_array(file, static_cast<int>(k), arrays[k]);
 }
 
 }  // namespace
 
-std::string table_exr_bytes(const Table& table) {
+std::string table_exr_bytes(const TableView& table) {
   Imf::StdOSStream stream;
-  write_table(stream, table, nullptr);
+  write_table(stream, table);
   return stream.str();
 }
 
@@ -216,14 +217,10 @@ Table parse_table_exr(std::string_view bytes, const std::string& name) {
 
 Table load_table_exr(const std::string& path) { return parse_table_exr(read_file(path), path); }
 
-void save_table_exr(const Table& table, const std::string& path) {
-  write_file_atomically(path, table_exr_bytes(table));
-}
-
-void save_table_exr(const Table& outline, const DenseCells& cells, const std::string& path) {
+void save_table_exr(const TableView& table, const std::string& path) {
   AtomicFile file(path);
   AtomicStream stream(file, path);
-  write_table(stream, outline, &cells);
+  write_table(stream, table);
   file.keep();
 }
 

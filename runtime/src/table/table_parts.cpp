@@ -24,16 +24,17 @@ constexpr std::array<const char*, 8> kRequiredInfo = {"recipe",    "recipe_hash"
                                                       "estimator", "spectrum",    "tool_version", "encoding"};
 
 // Hash over everything a file holds, so that damage shows.
-std::string parts_hash(const TableParts& parts, const DenseCells* cells = nullptr) {
+std::string content_hash_of(const Attributes& attributes, const std::vector<ArrayView>& arrays) {
   std::string digest;
-  for (const auto& [key, value] : parts.attributes)
+  for (const auto& [key, value] : attributes)
     if (key != "content_hash") digest += key + "=" + value + "\n";
-  for (const auto& array : parts.arrays) {
-    if (array.channels() == 1) digest += "numbers ";
-    digest += array.name() + (array.precision() == Precision::half_float ? " half\n" : " float\n");
-    for (const auto& [key, value] : describe_axes(array.axes())) digest += key + "=" + value + "\n";
+  for (const ArrayView& array : arrays) {
+    const ArrayShape& shape = array.shape();
+    if (shape.channels() == 1) digest += "numbers ";
+    digest += shape.name() + (shape.precision() == Precision::half_float ? " half\n" : " float\n");
+    for (const auto& [key, value] : describe_axes(shape.axes())) digest += key + "=" + value + "\n";
     ContentHash hash;
-    visit_values(array, cells, [&](std::size_t, std::span<const float> values) {
+    array.visit([&](std::span<const float> values) {
       hash.add({reinterpret_cast<const char*>(values.data()), values.size_bytes()});
     });
     digest += hash.text() + "\n";
@@ -184,7 +185,8 @@ Table build(const TableParts& parts) {
   else
     throw Error("encoding is '" + encoding + "'; allowed: dense, factored");
   check_ranges(table);
-  if (require(parts.attributes, "content_hash") != parts_hash(parts))
+  if (require(parts.attributes, "content_hash") !=
+      content_hash_of(parts.attributes, {parts.arrays.begin(), parts.arrays.end()}))
     throw Error("content does not match its hash: the file is damaged");
   for (const char* key : kRequiredInfo) table.info[key] = require(parts.attributes, key);
   read_spectrum(parts, table);
@@ -240,40 +242,27 @@ std::vector<Axis> parse_axes(const Attributes& attributes, const std::string& ar
   return axes;
 }
 
-void visit_values(const NdArray& array, const DenseCells* cells,
-                  const std::function<void(std::size_t first, std::span<const float> values)>& visit) {
-  if (!array.is_outline()) return visit(0, array.values());
-  if (!cells) throw Error("array '" + array.name() + "' has no values");
-  constexpr std::size_t kPiece = 1 << 22;  // values, unless a node has more
-  const std::size_t stride = array.stride(kParameterNames.size() - 1), nodes = array.cells() / stride;
-  const std::size_t at_once = std::max<std::size_t>(1, kPiece / (stride * array.channels()));
-  for (std::size_t first = 0; first < nodes; first += at_once) {
-    const std::size_t count = std::min(at_once, nodes - first);
-    visit(first * stride,
-          array.channels() == 1 ? cells->rest_stderr(first, count) : cells->remainder(first, count));
-  }
-}
-
-TableParts to_parts(const Table& table, const DenseCells* cells) {
-  if (!table.is_factored())
-    for (const NdArray* array : {&table.film_reflectance, &table.remainder, &table.rest_stderr})
-      if (array->empty()) throw Error("an empty table cannot be written");
-  TableParts parts;
-  parts.attributes = table.info;
-  parts.attributes["schema_version"] = std::to_string(kTableSchemaVersion);
-  parts.attributes["symmetry"] = name_of(table.symmetry);
-  for (const auto& key : material_keys()) parts.attributes["material." + key] = get_text(table.material, key);
+Attributes attributes_of(const TableView& view) {
+  const Table& table = view.head();
+  const std::vector<ArrayView> arrays = view.arrays();
+  const auto has = [&](const char* name) {
+    return std::ranges::any_of(arrays, [&](const ArrayView& array) { return array.shape().name() == name; });
+  };
+  if (!table.is_factored() && !(has("film_reflectance") && has("remainder") && has("rest_stderr")))
+    throw Error("an empty table cannot be written");
+  for (const ArrayView& array : arrays) require_finite(array);
+  Attributes attributes = table.info;
+  attributes["schema_version"] = std::to_string(kTableSchemaVersion);
+  attributes["symmetry"] = name_of(table.symmetry);
+  for (const auto& key : material_keys()) attributes["material." + key] = get_text(table.material, key);
   if (table.is_factored()) {
-    for (const auto& [key, value] : describe_axes(table.factors.grid))
-      parts.attributes[kGridPrefix + key] = value;
-    write_wavelengths(table.factors.wavelengths, parts.attributes);
+    for (const auto& [key, value] : describe_axes(table.factors.grid)) attributes[kGridPrefix + key] = value;
+    write_wavelengths(table.factors.wavelengths, attributes);
+  } else {
+    attributes["rest_frame"] = name_of(table.frame);
   }
-  if (!table.is_factored()) parts.attributes["rest_frame"] = name_of(table.frame);
-  // One order for every file form: both libraries list arrays in an order of their own.
-  for (const NdArray* array : table.arrays()) parts.arrays.push_back(*array);
-  for (const NdArray& array : parts.arrays) require_finite(array, cells);
-  parts.attributes["content_hash"] = parts_hash(parts, cells);
-  return parts;
+  attributes["content_hash"] = content_hash_of(attributes, arrays);
+  return attributes;
 }
 
 Table from_parts(const TableParts& parts, const std::string& name) {

@@ -2,9 +2,7 @@
 // table_checks.h.
 #pragma once
 
-#include <functional>
 #include <map>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -20,12 +18,9 @@ struct TableParts {
   std::vector<NdArray> arrays;
 };
 
-// `cells` has the values of outlines, if there are any.
-TableParts to_parts(const Table& table, const DenseCells* cells = nullptr);
-
-// Calls visit(first cell, values) for all of an array, from its first cell on.
-void visit_values(const NdArray& array, const DenseCells* cells,
-                  const std::function<void(std::size_t first, std::span<const float> values)>& visit);
+// Returns the attributes of a table's file, its content hash among them. Throws Error if the table is empty
+// or holds a value that is not finite.
+Attributes attributes_of(const TableView& table);
 
 // Checks schema, names, ranks, sizes, finiteness and the content hash before it builds. Throws Error whose
 // message starts with `name`.

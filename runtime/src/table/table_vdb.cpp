@@ -175,12 +175,14 @@ void check_identifier(std::string_view bytes, const std::string& name) {
 
 std::string table_vdb_bytes(const Table& table) {
   openvdb::initialize();
-  TableParts parts = to_parts(table);
   openvdb::MetaMap metadata;
-  for (const auto& [key, value] : parts.attributes)
+  for (const auto& [key, value] : attributes_of(table))
     metadata.insertMeta(kAttributePrefix + key, openvdb::StringMetadata(value));
   openvdb::GridPtrVec grids;
-  for (auto& array : parts.arrays) grids.push_back(to_grid(array));
+  for (const NdArray* array : table.arrays()) {
+    NdArray copy = *array;  // the library reads through a view that could write
+    grids.push_back(to_grid(copy));
+  }
   std::ostringstream out;
   openvdb::io::Stream stream(out);
   stream.setCompression(openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK);
@@ -224,8 +226,11 @@ std::string table_bytes(const Table& table, const std::string& path) {
   return extension(path) == ".vdb" ? table_vdb_bytes(table) : table_exr_bytes(table);
 }
 
-void save_table(const Table& table, const std::string& path) {
-  write_file_atomically(path, table_bytes(table, path));
+void save_table(const TableView& table, const std::string& path) {
+  require_table_extension(path);
+  if (extension(path) == ".exr") return save_table_exr(table, path);
+  std::optional<Table> room;
+  save_table_vdb(table.whole(room), path);
 }
 
 }  // namespace sunbeam::inline v1

@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sunbeam/core/vec.h"
@@ -17,20 +18,15 @@ enum class Precision { half_float, single_float };
 // How values are rounded on disk; in memory they are floats that already have that rounding.
 float round_to(Precision precision, double value);
 
-class NdArray {
+// An array without its values: its name, axes and precision, and where a cell lies.
+class ArrayShape {
  public:
   static constexpr std::size_t kMaxRank = 8;
 
-  NdArray() = default;
-  // All zero. Throws Error if an axis is unsound, there are none or too many, or the array is too large.
-  // `channels` is 3 (colours) or 1.
-  NdArray(std::string name, std::vector<Axis> axes, Precision precision, std::size_t channels = 3);
-
-  // The same array without its values, which are kept elsewhere: values() is empty, and get() must not be
-  // called.
-  static NdArray outline(std::string name, std::vector<Axis> axes, Precision precision,
-                         std::size_t channels = 3);
-  bool is_outline() const { return cells_ > 0 && values_.empty(); }
+  ArrayShape() = default;
+  // Throws Error if an axis is unsound, there are none or too many, or the array is too large. `channels` is
+  // 3 (colours) or 1.
+  ArrayShape(std::string name, std::vector<Axis> axes, Precision precision, std::size_t channels = 3);
 
   const std::string& name() const { return name_; }
   const std::vector<Axis>& axes() const { return axes_; }
@@ -42,12 +38,32 @@ class NdArray {
   // Distance in cells between neighbours along axis k: row-major, the last axis runs fastest.
   std::size_t stride(std::size_t k) const { return strides_[k]; }
 
+  bool operator==(const ArrayShape&) const = default;
+
+ private:
+  std::string name_;
+  std::vector<Axis> axes_;
+  Precision precision_ = Precision::single_float;
+  std::size_t channels_ = 3;
+  std::array<std::size_t, kMaxRank> strides_{};
+  std::size_t cells_ = 0;
+};
+
+class NdArray : public ArrayShape {
+ public:
+  NdArray() = default;
+  // All values are zero.
+  explicit NdArray(ArrayShape shape)
+      : ArrayShape(std::move(shape)), values_(ArrayShape::channels() * ArrayShape::cells()) {}
+  NdArray(std::string name, std::vector<Axis> axes, Precision precision, std::size_t channels = 3)
+      : NdArray(ArrayShape(std::move(name), std::move(axes), precision, channels)) {}
+
   // Values, channels() a cell.
   std::span<const float> values() const { return values_; }
   std::span<float> values() { return values_; }
   // A single number is the same in every channel.
   Rgb get(std::size_t cell) const {
-    if (channels_ == 1) return Rgb(values_[cell]);
+    if (channels() == 1) return Rgb(values_[cell]);
     return {values_[3 * cell], values_[3 * cell + 1], values_[3 * cell + 2]};
   }
   // Rounds to the precision of the array; -0 becomes 0 so that every file form keeps it. Of a single number
@@ -63,12 +79,6 @@ class NdArray {
   bool operator==(const NdArray&) const = default;
 
  private:
-  std::string name_;
-  std::vector<Axis> axes_;
-  Precision precision_ = Precision::single_float;
-  std::size_t channels_ = 3;
-  std::array<std::size_t, kMaxRank> strides_{};
-  std::size_t cells_ = 0;
   std::vector<float> values_;
 };
 

@@ -158,7 +158,7 @@ void GeneralWalk::follow_facets(const Vec3& wi, const Exit* exits, int count, Rn
 void GeneralWalk::add_facets(const Vec3& wi, const Exit* exits, int count, Rng& rng, double* sums) const {
   follow_facets(wi, exits, count, rng, sums);
   if (chance_) return;  // the first facet of a sampled walk is taken by other chances than the last
-  Exit entry;
+  Exit& entry = workspace().entry;
   draw_rays(wi, entry, rng);
   for (int k = 0; k < count; ++k) follow_facets(exits[k].wo, &entry, 1, rng, sums + k * count_);
 }
@@ -180,8 +180,7 @@ void GeneralWalk::draw_exit(const Vec3& wo, Exit& exit, Rng& rng) const {
   exit.rays = 0;
   exit.is_open = enter(wo, true, exit.power, exit.up, rng, [&](const Place& beyond, const Powers& power) {
     if (exit.rays == kMostRays || (exit.rays + 1) * count_ > kRoom) return;
-    const Vec3& x = beyond.travel;
-    exit.ray[exit.rays] = {beyond.side, x.x, x.y, x.z, beyond.depth};
+    exit.ray[exit.rays] = beyond;
     std::copy_n(power.data(), count_, &exit.ray_power[exit.rays++ * count_]);
   });
   exit.up = -exit.up;
@@ -206,7 +205,7 @@ void GeneralWalk::connect_facet(const FacetPath& path, const Exit& exit, double*
   const Place& at = path.at;
   if (at.side == Side::outside && path.order > 0) mirror_towards(path, exit.wo, 0, nullptr, sums);
   for (int k = 0; k < exit.rays; ++k) {
-    const Place ray = exit.place(k);
+    const Place& ray = exit.ray[k];
     if (ray.side == at.side) mirror_towards(path, -ray.travel, ray.depth, &exit.ray_power[k * count_], sums);
   }
   if (at.side == Side::inside && path.only_passed && layers_.bends) pass_towards(path, exit.wo, sums);
@@ -251,7 +250,7 @@ void GeneralWalk::pass_towards(const FacetPath& path, const Vec3& wo, double* su
 }
 
 void GeneralWalk::add_facets(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const {
-  Exit exit[kMostExits];
+  Exit* exit = workspace().exit.data();
   for (int k = 0; k < exits; ++k) draw_rays(wo[k], exit[k], rng);
   double found[kMostExits * kMostWavelengths];
   std::fill_n(found, exits * count_, 0.0);

@@ -16,6 +16,14 @@ GeneralWalk::GeneralWalk(const Layers& layers, const GeneralLayers& general, con
       camera_events_(
           std::min(2 + static_cast<int>(general.slab.g / (1 - general.slab.g)), kMostCameraEvents)) {}
 
+// One for each thread, since threads share a const GeneralWalk. One serves all walks of a thread: an estimate
+// draws what it reads, and no estimate runs within another. It starts as zeros, so that a thread pays for the
+// pages that it touches and no call allocates.
+GeneralWalk::Workspace& GeneralWalk::workspace() {
+  static constinit thread_local Workspace rooms{};
+  return rooms;
+}
+
 double GeneralWalk::total(const Powers& power) const {
   double sum = 0;
   for (int j = 0; j < count_; ++j) sum += power[j];
@@ -149,8 +157,8 @@ struct GeneralWalk::LightVisit {
 void GeneralWalk::add_unidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& rng,
                                      double* sums) const {
   Powers light{}, leaving[kMostExits]{};  // sums over walks, for the base part
+  Exit* exit = workspace().exit.data();
   for (int walk = 0; walk < kWalks; ++walk) {
-    Exit exit[kMostExits];
     for (int k = 0; k < exits; ++k) {
       draw_exit(wo[k], exit[k], rng);
       if (!exit[k].is_open) continue;
@@ -169,40 +177,6 @@ void GeneralWalk::add_unidirectional(const Vec3& wi, const Vec3* wo, int exits, 
   if (layers_.product && !chance_) return;
   for (int k = 0; k < exits; ++k) add_base(light, leaving[k], kWalks * kWalks, sums + k * count_);
 }
-
-// A ray of the camera's walk through the slab: light that reaches `origin` against it is seen.
-struct GeneralWalk::CameraRay {
-  double origin;
-  double x, y, z;  // travel of that light
-  Powers power;
-  double others;  // sum of 1 / (phase flight) over the walk's scattering events
-  int events;     // their number
-};
-
-struct GeneralWalk::CameraVisit {
-  static constexpr bool kIsCamera = true;
-  int most_events = 0;
-  Powers arrived{};
-  int rays = 0, events = 0;
-  double others = 0, last_flight = 0;
-  std::array<CameraRay, 2 * kMostCameraEvents + 1> ray;
-
-  void add(double origin, const Vec3& travel, const Powers& power) {
-    if (events <= most_events) ray[rays++] = {origin, -travel.x, -travel.y, -travel.z, power, others, events};
-  }
-  void leg(double flight) { last_flight = flight; }
-  void meet(double, const Vec3&, const Powers&) {}
-  void scattered(double phase, double depth, const Vec3& travel, const Powers& power) {
-    others += 1 / (phase * last_flight);
-    ++events;
-    add(depth, travel, power);
-  }
-  void thrown_back(const Vec3& travel, const Powers& power) { add(0, travel, power); }
-  bool at_base(double, const Powers& power) {
-    arrived = power;
-    return false;
-  }
-};
 
 // Of the light's last events, the latest first: what the camera could have done in their place.
 struct GeneralWalk::PairedLightVisit {
@@ -229,7 +203,7 @@ struct GeneralWalk::PairedLightVisit {
     for (int k = 0; k < count; ++k)
       for (int r = 0; r < cameras[k].rays; ++r) {
         const CameraRay& ray = cameras[k].ray[r];
-        walk.scatter_towards(depth, travel, power, {ray.x, ray.y, ray.z}, ray.origin, ray.power,
+        walk.scatter_towards(depth, travel, power, ray.travel, ray.origin, ray.power,
                              ray.others + lately[walk.camera_events_ - ray.events], sums + k * walk.count_);
       }
   }
@@ -245,12 +219,12 @@ struct GeneralWalk::PairedLightVisit {
 void GeneralWalk::add_bidirectional(const Vec3& wi, const Vec3* wo, int exits, Rng& rng, double* sums) const {
   if (layers_.product) return add_unidirectional(wi, wo, exits, rng, sums);
   Powers light{}, leaving[kMostExits]{};  // sums over walks, for the base part
+  Exit* exit = workspace().exit.data();
+  CameraVisit* seen = workspace().seen.data();
   for (int walk = 0; walk < kWalks; ++walk) {
-    Exit exit[kMostExits];
-    CameraVisit seen[kMostExits];
     for (int k = 0; k < exits; ++k) {
       draw_exit(wo[k], exit[k], rng);
-      seen[k].most_events = camera_events_;
+      seen[k].start(camera_events_);
       if (!exit[k].is_open) continue;
       Powers power = exit[k].power;
       seen[k].add(0, -exit[k].up, power);

@@ -71,7 +71,7 @@ class GeneralWalk {
   GeneralSample sample(const Vec3& wo, Powers& power, Rng& rng) const;
 
  private:
-  struct PackedPlace;
+  struct Workspace;
   struct Exit;
   struct LightVisit;
   struct CameraRay;
@@ -100,6 +100,8 @@ class GeneralWalk {
     int facets = 1;                                      // met on the way
     double facet_cosine = 0, chance = 1, shadowing = 1;  // of the last one
   };
+
+  static Workspace& workspace();
 
   // Film.
   void reflectances(const Place& at, double cosine, Powers& r) const;

@@ -41,12 +41,6 @@ inline double depth_after(const Leg& leg, double depth, const Vec3& travel) {
   return std::clamp(depth - leg.length * travel.z, 0.0, 1.0);
 }
 
-// A Place that costs nothing to leave uninitialised.
-struct GeneralWalk::PackedPlace {
-  Side side;
-  double x, y, z, depth;
-};
-
 // A direction drawn backwards from an exit to below the film.
 struct GeneralWalk::Exit {
   Vec3 wo;
@@ -55,10 +49,55 @@ struct GeneralWalk::Exit {
   Powers power;
   // On its way, after each facet passed as long as none has mirrored.
   int rays;
-  std::array<PackedPlace, kMostRays> ray;
+  std::array<Place, kMostRays> ray;
   std::array<double, kRoom> ray_power;  // count_ of the walk for each
+};
 
-  Place place(int k) const { return {ray[k].side, {ray[k].x, ray[k].y, ray[k].z}, ray[k].depth}; }
+// A ray of the camera's walk through the slab: light that reaches `origin` against it is seen.
+struct GeneralWalk::CameraRay {
+  double origin;
+  Vec3 travel;  // of that light
+  Powers power;
+  double others;  // sum of 1 / (phase flight) over the walk's scattering events
+  int events;     // their number
+};
+
+struct GeneralWalk::CameraVisit {
+  static constexpr bool kIsCamera = true;
+  int most_events;
+  Powers arrived;
+  int rays, events;
+  double others, last_flight;
+  std::array<CameraRay, 2 * kMostCameraEvents + 1> ray;
+
+  void start(int most) {
+    most_events = most;
+    arrived = {};
+    rays = events = 0;
+    others = last_flight = 0;
+  }
+  void add(double origin, const Vec3& travel, const Powers& power) {
+    if (events <= most_events) ray[rays++] = {origin, -travel, power, others, events};
+  }
+  void leg(double flight) { last_flight = flight; }
+  void meet(double, const Vec3&, const Powers&) {}
+  void scattered(double phase, double depth, const Vec3& travel, const Powers& power) {
+    others += 1 / (phase * last_flight);
+    ++events;
+    add(depth, travel, power);
+  }
+  void thrown_back(const Vec3& travel, const Powers& power) { add(0, travel, power); }
+  bool at_base(double, const Powers& power) {
+    arrived = power;
+    return false;
+  }
+};
+
+// The rooms that an estimate draws its paths in: they are too large for the stack of a thread.
+struct GeneralWalk::Workspace {
+  std::array<Exit, kMostExits> exit;
+  std::array<CameraVisit, kMostExits> seen;
+  Exit entry;  // of the facets part
 };
 
 }  // namespace sunbeam::walk

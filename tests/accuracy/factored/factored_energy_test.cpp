@@ -74,7 +74,7 @@ class Monochromatic {
     const double nm = lerp(rng.uniform(), shortest_, longest_);
     table_.factors.wavelengths = {{nm}, {1}, {1}, {Rgb(1)}};
     const Material material = parameters.applied_to(table_.material);
-    const BoundWaves rest(table_, material);
+    const BoundWaves rest(table_, material, film_kernels(Arithmetic::fastest));
     const double cosine = lerp(rng.uniform(), kLeastCosine, 1);
     const auto row = rest.row(rest.direction(cosine, 0));
     const double returned = test::integrate(

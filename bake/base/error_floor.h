@@ -1,4 +1,4 @@
-// The floor of relative errors: what is darker need not be known better.
+// This file sets the floor of relative errors: what is darker need not be known better.
 #pragma once
 
 #include "sunbeam/core/vec.h"
@@ -10,7 +10,7 @@ namespace sunbeam {
 inline constexpr double kDarkestAlbedo = 0.002;
 inline constexpr double kDarkestValue = kDarkestAlbedo * kInvPi;
 
-// Folded colours may have negative components.
+// Returns the mean of the components' magnitudes; folded colours may have negative ones.
 inline double mean_abs(const Rgb& a) {
   return mean(transform(a, [](double x) { return std::abs(x); }));
 }

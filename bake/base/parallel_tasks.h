@@ -1,4 +1,4 @@
-// Independent tasks on a given number of threads, with progress.
+// This file runs independent tasks on a given number of threads and reports their progress.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// The running mean of one tabulated value and how well it is known.
+// This class keeps the running mean of one tabulated value and says how well it is known.
 #pragma once
 
 #include "bake/base/error_floor.h"
@@ -19,12 +19,13 @@ class RunningMean {
                      [count](double variance) { return std::sqrt(std::max(0.0, variance) / (count - 1)); });
   }
 
-  // Of the mean over channels, relative to its value or to kDarkestValue.
+  // Returns the standard error, averaged over channels, relative to the mean value or to kDarkestValue if
+  // that is larger.
   double relative_error(double count) const {
     return mean(standard_error(count)) / std::max(mean_abs(mean_of(count)), kDarkestValue);
   }
 
-  // The stop rule.
+  // Says whether the value is known to `noise`: this is the stop rule.
   bool is_known(double noise, double count) const { return relative_error(count) <= noise; }
 
  private:

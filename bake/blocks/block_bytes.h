@@ -1,4 +1,4 @@
-// Numbers as the bytes of a block, in the machine's own order.
+// This file turns numbers into the bytes of a block and back, in the byte order of the processor.
 #pragma once
 
 #include <cstring>
@@ -15,7 +15,7 @@ void append(std::string& bytes, std::span<const T> values) {
   bytes.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
 }
 
-// All of `bytes`. Throws Error unless they are `count` numbers.
+// Returns the numbers that `bytes` hold. Throws Error unless they are `count` numbers.
 template <class T>
 std::vector<T> unpacked(const std::string& bytes, std::size_t count) {
   if (bytes.size() != count * sizeof(T)) throw Error("a block of the bake has the wrong size");

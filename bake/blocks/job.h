@@ -1,6 +1,6 @@
-// A bake as independent tasks. Each makes one block of values, with the same bits whatever runs before or
-// beside it, in which process and on how many threads; the table is made of the blocks once all are there. So
-// a bake may be killed and resumed, or dealt out to many machines.
+// This file describes a bake as independent tasks. Each makes one block of values, with the same bits
+// whatever runs before or beside it, in which process and on how many threads; the table is made of the
+// blocks once all are there. So a bake may be killed and resumed, or dealt out to many machines.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct Block {
   std::string values;  // bytes that the job alone understands
 };
 
-// Finished blocks, by task. All functions may be called by many threads.
+// Gives access to finished blocks by task. All functions may be called by many threads.
 class Blocks {
  public:
   virtual ~Blocks() = default;
@@ -42,23 +42,24 @@ class BakeJob {
   virtual ~BakeJob() = default;
 
   virtual std::size_t tasks() const = 0;
-  // Rough forecast of the seconds a core spends on a task. Its proportions say how far a bake is; it depends
-  // on the recipe alone.
+  // Returns a rough forecast of the seconds that a core spends on a task. Its proportions say how far a bake
+  // is; it depends on the recipe alone.
   virtual double cost(std::size_t task) const = 0;
 
-  // First tasks of the groups that share a preparation.
+  // Returns the first task of each group of tasks that share a preparation.
   virtual std::vector<std::size_t> groups() const { return {0}; }
-  // Before any of `tasks`, which are of one group; what was prepared before may be forgotten.
+  // Makes that preparation and is called before any of `tasks`, which are of one group. What was prepared
+  // before may be forgotten.
   virtual void prepare(const TaskRange& /*tasks*/, int /*threads*/) {}
 
-  // Thread safe, beside other tasks of its group.
+  // Makes the block of a task. It is safe to call beside other tasks of the same group.
   virtual Block run(std::size_t task) const = 0;
 
-  // Made of all blocks, which must outlive it, as the job must.
+  // Returns the table made of all blocks; they and the job must outlive it.
   virtual TableView table(const Blocks& blocks) const = 0;
 };
 
-// In the order of tasks, the whole of which `job` counts.
+// Returns the walks of all blocks together; `job` tells how many there are.
 std::uint64_t total_walks(const BakeJob& job, const Blocks& blocks);
 
 }  // namespace sunbeam

@@ -1,8 +1,9 @@
-// Finished blocks of a bake in one file that only grows, so that a bake may be killed at any moment: the work
-// of a bake that goes on, and the part that a shard hands to `sunbeam merge`.
+// A journal keeps the finished blocks of a bake in one file that only grows, so that a bake may be killed at
+// any moment. It is what a resumed bake goes on from, and the part that a shard hands to `sunbeam merge`.
 //
-// The file is a header - what is baked, as text - and records, each of them with a hash. A record that was
-// cut short or damaged ends the file for a reader. Numbers are in the order of the machine (little-endian).
+// The file is a header, which says as text what is baked, and records, each of them with a hash. A record
+// that was cut short or damaged ends the file for a reader. Numbers are in the order of the machine
+// (little-endian).
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,7 @@
 
 namespace sunbeam {
 
-// What is baked: blocks of different ones do not mix.
+// Says what is baked: blocks of different identities do not mix.
 struct BakeIdentity {
   std::string version;      // of the tool
   std::string recipe_hash;  // of `recipe`
@@ -26,17 +27,18 @@ struct BakeIdentity {
   std::string text() const;
   static BakeIdentity parse(const std::string& text);  // throws Error
 
-  // Empty if blocks of both mix; else which property differs and how. Shards are not compared.
+  // Returns an empty text if blocks of both mix, else which property differs and how. Shards are not
+  // compared.
   std::string difference(const BakeIdentity& other) const;
 };
 
 class Journal : public BlockStore {
  public:
-  // A new file, or one that has been started. Throws Error if it cannot be written, is in use by another bake
-  // or is of another identity or shard. What is damaged of its end is cut off.
+  // Opens a new file, or one that has been started. Throws Error if it cannot be written, is in use by
+  // another bake or is of another identity or shard. A damaged end is cut off.
   static std::unique_ptr<Journal> open(const std::string& path, const BakeIdentity& identity);
 
-  // To read alone. Throws Error naming the file if it is no journal.
+  // Opens a file for reading alone. Throws Error naming the file if it is no journal.
   static std::unique_ptr<Journal> read(const std::string& path);
 
   ~Journal() override;
@@ -46,10 +48,11 @@ class Journal : public BlockStore {
   const std::string& path() const { return path_; }
   const BakeIdentity& identity() const { return identity_; }
   std::size_t blocks() const;
-  // Bytes at the end that are no whole record.
+  // Returns the number of bytes at the end that are no whole record.
   std::uint64_t damaged_bytes() const { return damaged_bytes_; }
 
-  // Flushed to disk if the last flush was kSyncSeconds ago. Throws Error (disk full) with the file as it was.
+  // Appends a block, and flushes the file to disk if the last flush was kSyncSeconds ago. Throws Error (disk
+  // full) and leaves the file as it was.
   void add(std::size_t task, const Block& block) override;
   bool has(std::size_t task) const override;
   BlockSummary summary(std::size_t task) const override;

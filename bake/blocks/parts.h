@@ -1,15 +1,15 @@
-// The parts of a bake that was dealt out to shards, joined.
+// This file joins the parts of a bake that was dealt out to shards.
 #pragma once
 
 #include "bake/blocks/journal.h"
 
 namespace sunbeam {
 
-// Blocks of all parts. Every function but the constructor as in Blocks.
+// Gives access to the blocks of all parts, as Blocks says.
 class Parts : public Blocks {
  public:
-  // Throws Error naming parts that cannot be read, are of different bakes or of another version of the tool,
-  // or are the same shard, and shards that are missing.
+  // Opens the parts. Throws Error naming parts that cannot be read, are of different bakes or of another
+  // version of the tool, or are the same shard, and shards that are missing.
   explicit Parts(const std::vector<std::string>& paths);
 
   const BakeIdentity& identity() const { return parts_.front()->identity(); }

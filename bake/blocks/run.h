@@ -7,7 +7,7 @@
 
 namespace sunbeam {
 
-// Where finished blocks go. add() is called by one thread at a time.
+// Takes finished blocks in. add() is called by one thread at a time.
 class BlockStore : public Blocks {
  public:
   virtual void add(std::size_t task, const Block& block) = 0;
@@ -30,7 +30,8 @@ class BlocksInMemory : public BlockStore {
   std::vector<char> done_;
 };
 
-// Shard `shard` (from 0) of `shards` of about equal cost: tasks that follow one another.
+// Returns the tasks of shard `shard` (from 0) of `shards`: they follow one another, and shards cost about the
+// same.
 TaskRange shard_of(const BakeJob& job, int shard, int shards);
 
 struct BakeProgress {
@@ -45,7 +46,7 @@ struct TaskSettings {
   std::function<bool()> should_stop;                     // asked before each task
 };
 
-// Runs what `store` lacks. False if it was stopped before the end.
+// Runs the tasks of `range` whose blocks `store` lacks. Returns false if it was stopped before the end.
 bool run_tasks(BakeJob& job, const TaskRange& range, BlockStore& store, const TaskSettings& settings);
 
 }  // namespace sunbeam

@@ -1,4 +1,5 @@
-// A CSV file with a header; lines that start with '#' and empty lines are skipped. Cells keep their text.
+// This file reads CSV files with a header. Lines that start with '#' and empty lines are skipped; cells keep
+// their text.
 #pragma once
 
 #include <iosfwd>
@@ -19,13 +20,13 @@ struct Csv {
   std::vector<CsvRow> rows;
 
   std::optional<std::size_t> column(const std::string& key) const;
-  // A finite number in [low, high), or in [low, high] if closed; else throws Error naming file, line and
-  // column.
+  // Returns the cell as a number. Throws Error naming file, line and column unless it is finite and in [low,
+  // high), or in [low, high] if closed.
   double number(const CsvRow& row, std::size_t column, double low, double high, bool closed) const;
 };
 
-// Throws Error if there is no header, a name comes twice, or a row has another number of cells than the
-// header.
+// Reads a file whose name in messages is `name`. Throws Error if there is no header, a column's name comes
+// twice, or a row has another number of cells than the header.
 Csv read_csv(std::istream& in, const std::string& name);
 
 }  // namespace sunbeam

@@ -29,12 +29,13 @@ struct PointsSettings {
   Quantity quantity = Quantity::brdf;
   std::int64_t samples = 10000;  // estimates a row (live only), at least 2
   std::uint64_t seed = 1;        // row k uses random stream k
-  // Live only, row by row if automatic. exact: rest and albedo by quadrature, stderr 0.
+  // Only live evaluation uses it, row by row if it is automatic. With exact, rest and albedo come by
+  // quadrature and stderr is 0.
   Estimator estimator = Estimator::pfmc;
 };
 
-// `name` is the CSV's, for messages. Throws Error before anything is written if a row is bad. Live: returns
-// the names of the estimators used.
+// Both evaluate the rows of `csv`, whose name in messages is `name`, and write them with the results. Throws
+// Error before anything is written if a row is bad. The live one returns the names of the estimators used.
 std::set<std::string> evaluate_points_live(const Material& material, const Spectrum& spectrum,
                                            std::istream& csv, const std::string& name,
                                            const PointsSettings& settings, std::ostream& out);

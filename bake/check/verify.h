@@ -1,4 +1,5 @@
-// A table against the live model at random held-out parameters: how far off it is, how much of that is noise.
+// This file holds a table against the live model at random held-out parameters. It says how far off the table
+// is and how much of that is noise.
 //
 // Point k draws its own parameters (uniform over each axis' physical range) and wi (uniform in cosine, theta
 // <= 89 degrees; for an anisotropic table also in azimuth) from random stream k. Its error is
@@ -44,7 +45,7 @@ struct VerifyPoint {
   double reciprocity = 0;  // max |f(i,o) - f(o,i)| / max(|f(i,o)|, |f(o,i)|, 0.002/pi)
 };
 
-// Order statistic of one value or more: the smallest that at least a share q of all values do not exceed.
+// Returns a quantile of one value or more: the smallest that at least a share q of all values do not exceed.
 double quantile(std::vector<double> values, double q);
 
 struct Quantiles {
@@ -58,21 +59,23 @@ struct VerifyReport {
   std::string truth;  // the estimator the table was held against
 };
 
-// What a table of this recipe is held against unless told otherwise: walks, and where the pigment scatters
-// those of the recipe; the exact evaluator where the tolerance is finer than walks can show in useful time.
+// Returns what a table of this recipe is held against unless told otherwise. These are walks, and where the
+// pigment scatters those of the recipe; where the tolerance is finer than walks can show in useful time it is
+// the exact evaluator.
 Estimator default_truth(const Recipe& recipe);
 
-// The tolerances of the recipe and its default truth; points, seed and threads as they are by default.
+// Returns settings with the tolerances of the recipe and its default truth; points, seed and threads keep
+// their defaults.
 VerifySettings verify_settings_of(const Recipe& recipe);
 
-// Throws Error if the recipe in the table cannot be read, or naming the key if truth is exact and the
-// material has no exact evaluator.
+// Measures the error of a table at random points. Throws Error if the recipe in the table cannot be read, or
+// naming the key if truth is exact and the material has no exact evaluator.
 VerifyReport verify(const TableView& table, const VerifySettings& settings);
 
-// True if median and p99 of the error are within the tolerances.
+// Says whether median and p99 of the error are within the tolerances.
 bool within_tolerance(const VerifyReport& report, const VerifySettings& settings);
 
-// The figures by their JSON names: error_median, error_p95, ..., points.
+// Returns the figures by their JSON names: error_median, error_p95, ..., points.
 std::vector<std::pair<std::string, double>> figures(const VerifyReport& report);
 
 }  // namespace sunbeam

@@ -1,5 +1,6 @@
-// The subcommands of `sunbeam`: options as plain structs, one function each. main.cpp fills them from the
-// command line; every function returns the exit code and throws Error for bad input.
+// This file declares the subcommands of `sunbeam`, each as a plain struct of options and a function. main.cpp
+// fills the options from the command line; every function returns the exit code and throws Error for bad
+// input.
 #pragma once
 
 #include <cstdint>
@@ -57,7 +58,7 @@ int run_verify(const VerifyOptions& options);
 
 struct PlotOptions {
   std::string table, output, what;
-  // The table's defaults if not given.
+  // Values that are not given are the table's defaults.
   std::optional<double> film_thickness_nm, base_ior, absorption_per_nm;
   std::optional<double> theta_i_deg;  // of --what polar
 };
@@ -87,7 +88,7 @@ struct CompareOptions {
   std::string png;  // false-colour FLIP; empty: none
   bool json = false;
   double pixels_per_degree = kDefaultPixelsPerDegree;
-  // Exit code 1 above these.
+  // The exit code is 1 above these.
   std::optional<double> max_rmse, max_relmse, max_flip, max_bias, max_bias_z;
 };
 int run_compare(const CompareOptions& options);

@@ -1,4 +1,4 @@
-// The end of `sunbeam bake` and `sunbeam merge`, and what they say of it on stderr.
+// This file holds the end of `sunbeam bake` and `sunbeam merge`, and what they say of it on stderr.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace sunbeam {
 
-// Measures the table's error. True if it is within the recipe's tolerances.
+// Measures the table's error. Returns true if it is within the recipe's tolerances.
 bool measure_error(FinishedBake& table, const Recipe& recipe, int points, int threads, ProgressForm form);
 
 // Writes the table.

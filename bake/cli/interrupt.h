@@ -1,4 +1,5 @@
-// Ctrl-C and SIGTERM as a question to ask, while alive.
+// This class makes Ctrl-C and SIGTERM a question to ask: while an object is alive, the signals are remembered
+// and do not end the program.
 #pragma once
 
 #include <csignal>

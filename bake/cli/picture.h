@@ -1,4 +1,4 @@
-// What `sunbeam render` keeps beside the pixels of a picture, and the files it makes.
+// This file reads and writes the pictures of `sunbeam render`, with what they keep beside their pixels.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace sunbeam {
 
-// What a picture was made from: string attributes "sunbeam.NAME" of its .exr.
+// Says what a picture was made from; its .exr holds it in string attributes "sunbeam.NAME".
 struct PictureSource {
   std::string scene;       // path
   std::string scene_hash;  // of the scene file, its number of samples left out
@@ -21,11 +21,11 @@ struct PictureSource {
 void write_picture(const std::string& output, const RenderResult& picture, const PictureSource& source,
                    bool report);
 
-// What write_picture() wrote, to go on from; seconds are those it took. Throws Error naming the file and what
-// differs if it was made from something else or lacks a layer.
+// Reads what write_picture() wrote, to go on from; seconds are those it took. Throws Error naming the file
+// and what differs if it was made from something else or lacks a layer.
 RenderResult read_picture(const std::string& path, const PictureSource& source);
 
-// The .png beside OUTPUT.exr.
+// Returns the path of the .png beside OUTPUT.exr.
 std::string png_beside(const std::string& output);
 
 }  // namespace sunbeam

@@ -1,5 +1,5 @@
-// Progress on stderr: a bar that redraws itself on a terminal, a plain line every tenth otherwise, or, for a
-// farm's log, a line of JSON every second.
+// This file shows progress on stderr. On a terminal it is a bar that redraws itself, otherwise a plain line
+// every tenth; for the log of a render farm it is a line of JSON every second.
 #pragma once
 
 #include <chrono>
@@ -11,19 +11,19 @@ namespace sunbeam {
 
 enum class ProgressForm { text, json };
 
-// Of the option --progress: "text" or "json".
+// Returns the form that the option --progress names: "text" or "json".
 inline ProgressForm progress_form(const std::string& name) {
   return name == "json" ? ProgressForm::json : ProgressForm::text;
 }
 
 class Progress {
  public:
-  // `unit` and `total` give the rate: "nodes", 1280 shows nodes a second.
+  // Starts the clock. `unit` and `total` give the rate: "nodes", 1280 shows nodes a second.
   Progress(std::string what, std::string unit, double total, ProgressForm form = ProgressForm::text);
   void operator()(double fraction) { show(fraction, total_ * fraction); }
-  // What an earlier run had done counts as done, but not for the rate.
+  // Shows the progress of a bake. What an earlier run had done counts as done, but not for the rate.
   void operator()(const BakeProgress& progress);
-  // Where the total is not known: `done` of the units so far.
+  // Shows the progress where the total is not known; `done` counts the units so far.
   void show(double fraction, double done);
 
  private:

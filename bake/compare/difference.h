@@ -1,4 +1,5 @@
-// How far one rendered picture (the test) is from another (the reference), and whether noise explains it.
+// This file measures how far one rendered picture (the test) is from another (the reference), and whether
+// noise explains it.
 //
 // Everything is measured on linear Rec.709 values, channels apart; sums run over pixels and channels.
 #pragma once
@@ -11,26 +12,28 @@
 
 namespace sunbeam {
 
-// Added to the squared reference in the relative error, so that black pixels do not divide by zero.
+// This is added to the squared reference in the relative error, so that black pixels do not divide by zero.
 inline constexpr double kRelativeMseEpsilon = 0.01;
 inline constexpr double kZLimit = 3;                // standard errors
 inline constexpr int kBlockSize = 10;               // pixels on a side
 inline constexpr double kZ95 = 1.9599639845400545;  // half-width of a 95 % interval, in standard errors
 
-// Share of values of a normal distribution beyond kZLimit standard deviations on either side: 0.0027.
+// Returns the share of values of a normal distribution beyond kZLimit standard deviations on either side:
+// 0.0027.
 double expected_share_beyond();
 
-// How many of the values that have noise differ by more than kZLimit standard errors.
+// Counts how many of the values that have noise differ by more than kZLimit standard errors.
 struct ZCount {
   std::int64_t tested = 0, beyond = 0;
   double share() const { return tested > 0 ? static_cast<double>(beyond) / static_cast<double>(tested) : 0; }
 };
 
-// With the variance of both pictures. A value is one channel of a pixel or, for blocks, of the mean over
-// kBlockSize x kBlockSize pixels (fewer at the right and lower edges). Its z is the difference over the root
-// of the summed variances, to which the rounding of both values to float is added. Pixels that agree and have
-// no noise in either picture, such as a constant background, are not tested. The mean of a block is nearly
-// normal; a single pixel of few samples is not, and more than the normal share of them can lie beyond.
+// Says whether noise explains the difference, from the variance of both pictures. A value is one channel of a
+// pixel or, for blocks, of the mean over kBlockSize x kBlockSize pixels (fewer at the right and lower edges).
+// Its z is the difference over the root of the summed variances, to which the rounding of both values to
+// float is added. Pixels that agree and have no noise in either picture, such as a constant background, are
+// not tested. The mean of a block is nearly normal; a single pixel of few samples is not, and more than the
+// normal share of them can lie beyond.
 struct NoiseTest {
   Rgb bias_error;  // standard error of the bias
   Rgb bias_z;      // bias / bias_error; 0 where both are 0
@@ -45,11 +48,12 @@ struct Difference {
   std::optional<NoiseTest> noise;  // if both pictures have variance
 };
 
-// read_exr() for a picture to compare. Throws Error, naming the file, also for values that are not finite and
-// for negative variances.
+// Reads a picture to compare by read_exr(). Throws Error, naming the file, also for values that are not
+// finite and for negative variances.
 ExrImage read_rendering(const std::string& path);
 
-// Throws Error unless both have one size, that of at least one pixel. Values as read_rendering() allows them.
+// Measures the difference of two pictures, whose values must be as read_rendering() allows them. Throws Error
+// unless both have one size, that of at least one pixel.
 Difference difference(const ExrImage& test, const ExrImage& reference);
 
 }  // namespace sunbeam

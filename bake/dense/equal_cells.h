@@ -1,5 +1,6 @@
-// Cells of one parameter node of a dense table whose values are equal, because the surface is its own mirror
-// image, because light may be reversed, or because a direction along z has no azimuth.
+// This file finds the cells of one parameter node of a dense table whose values are equal, because the
+// surface is its own mirror image, because light may be reversed, or because a direction along z has no
+// azimuth.
 #pragma once
 
 #include <cstddef>
@@ -11,19 +12,21 @@
 
 namespace sunbeam {
 
-// One number a cell: for each wi, those of every wo of the table. The rest or its standard error, 1/sr.
+// Holds one number a cell: for each wi, those of every wo of the table. It is the rest or its standard error,
+// 1/sr.
 using Rows = std::vector<std::vector<Rgb>>;
 
 class EqualCells {
  public:
-  // `azimuths` over phi_o as in Recipe; a film is isotropic or has azimuths / 4 + 1 of them over phi_i.
+  // Finds the classes of equal cells. `azimuths` is the number over phi_o, as in Recipe; a film is isotropic
+  // or has azimuths / 4 + 1 of them over phi_i.
   EqualCells(bool is_isotropic, std::size_t cosines, std::size_t azimuths);
 
-  // Replaces the values of each class of equal cells by their mean: less noise, and symmetries hold to the
-  // last bit.
+  // Replaces the values of each class of equal cells by their mean. That lowers noise, and symmetries hold to
+  // the last bit.
   void average(Rows& values) const;
-  // The standard errors of these means. Cells of a row share their walks, so their errors add up; those of
-  // different rows do not.
+  // Replaces standard errors by those of these means. Cells of a row share their walks, so their errors add
+  // up; those of different rows do not.
   void average_errors(Rows& errors) const;
 
  private:

@@ -1,4 +1,5 @@
-// The parameter nodes of a dense table, and what the rest at one of them becomes in the table's arrays.
+// This file lists the parameter nodes of a dense table and turns the rest at one of them into values of the
+// table's arrays.
 #pragma once
 
 #include <optional>
@@ -11,7 +12,7 @@
 
 namespace sunbeam {
 
-// Axes of a dense table's remainder.
+// Returns the axes of a dense table's remainder.
 std::vector<Axis> rest_axes(const Recipe& recipe);
 
 class DenseNodes {
@@ -22,19 +23,20 @@ class DenseNodes {
   Parameters parameters(std::size_t node) const;
   Material material(std::size_t node) const { return parameters(node).applied_to(recipe_.material); }
 
-  // Directions of a row and of its places; cosines of both, azimuths of wo.
+  // These are the directions of a row (wi) and of the places in it (wo), with the cosines of both and the
+  // azimuths of wo.
   const std::vector<Vec3>& wi() const { return wi_; }
   const std::vector<Vec3>& wo() const { return wo_; }
   const std::vector<double>& cosines() const { return remainder_.axes()[3].nodes; }
   const std::vector<double>& azimuths() const { return remainder_.axes()[6].nodes; }
   std::size_t cells() const { return wi_.size() * wo_.size(); }
 
-  // The table without `info`, `remainder` and `rest_stderr`, and the shapes of these two arrays.
+  // These return the table without `info`, `remainder` and `rest_stderr`, and the shapes of these two arrays.
   const Table& head() const { return head_; }
   const ArrayShape& remainder_shape() const { return remainder_; }
   const ArrayShape& rest_stderr_shape() const { return rest_stderr_; }
 
-  // What the arrays hold of a node, from its rest and from the rest's standard error.
+  // These return what the arrays hold of a node, made from its rest and from the rest's standard error.
   std::vector<float> remainder(std::size_t node, Rows rest) const;
   std::vector<float> rest_stderr(Rows errors) const;
 

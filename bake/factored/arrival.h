@@ -9,7 +9,8 @@
 
 namespace sunbeam {
 
-// The mean relative variance of A, then log A less its decay, at (depth, order).
+// Walks the legs of one direction at one base IOR. The block holds the mean relative variance of A, then log
+// A less its decay, at (depth, order).
 Block walk_arrival(const SharedInputs& bake, std::size_t ior, std::size_t direction);
 
 // Puts the values of such a block into `array`; returns the mean relative variance.

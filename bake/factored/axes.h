@@ -1,5 +1,5 @@
-// Axes of the factored encoding's arrays (sunbeam/detail/factors.h), as the recipe's grid, wavelengths and
-// film ask for.
+// This file chooses the axes of the factored encoding's arrays (sunbeam/detail/factors.h), as the recipe's
+// grid, wavelengths and film ask for.
 #pragma once
 
 #include "bake/recipe/recipe.h"
@@ -7,17 +7,19 @@
 
 namespace sunbeam {
 
-// Factors without the values of their arrays; members as there.
+// Holds Factors without the values of their arrays; the members are those described there.
 struct FactorShapes {
   std::vector<Axis> grid;
   Wavelengths wavelengths;
   ArrayShape arrival, returned, exchange;
 };
 
-// Throws Error if the recipe's factored table would be larger than a machine can hold.
+// Returns the shapes of the recipe's factored table. Throws Error if it would be larger than a computer can
+// hold.
 FactorShapes factor_shapes(const Recipe& recipe);
 
-// Directions (cos_theta, phi) of an array of the recipe; `suffix` tells two of them apart.
+// Returns the axes of a direction (cos_theta, phi) in an array of the recipe. `suffix` tells the two
+// directions of one array apart.
 std::vector<Axis> direction_axes(const Recipe& recipe, const std::string& suffix);
 
 }  // namespace sunbeam

@@ -9,12 +9,12 @@
 
 namespace sunbeam {
 
-// `bake` must outlive it.
+// Walks the legs and sums their chains. `bake` must outlive it.
 class ExchangeWalks {
  public:
   explicit ExchangeWalks(const SharedInputs& bake);
 
-  // Parts of the fringe orders.
+  // The fringe orders are made in this many parts.
   std::size_t parts() const;
   struct Orders {
     std::size_t first, end;
@@ -22,7 +22,7 @@ class ExchangeWalks {
   };
   Orders orders_of(std::size_t part) const;
 
-  // At (depth, albedo, order, wi, wo), of one part.
+  // Makes the values of one part, at (depth, albedo, order, wi, wo).
   Block run(std::size_t ior, std::size_t part) const;
 
   // Puts the values of such a block into `array`.

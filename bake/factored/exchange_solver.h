@@ -1,4 +1,5 @@
-// All visits of the base at once, with absorption path "product": `exchange` of sunbeam/detail/factors.h.
+// This file sums all visits of the base at once, with absorption path "product". The sum is `exchange` of
+// sunbeam/detail/factors.h.
 //
 // A walk is a chain of legs, joined by the base's exp(-tau / (m m')) between light that arrives along the
 // cosine m and leaves along m'. With cosines at nodes m_a, and
@@ -13,8 +14,8 @@
 //        = s kd/pi A_i A_o [ p_i^T f_o + kd f_i^T B y_o ],     f = F p,   (1 - kd F B) y_o = f_o.
 //
 // The first term is one visit, E = exp(tau (1/m_i + 1/m_o - 1/(m_i m_o))) unless facets bend light, so
-// exchange = p_i^T f_o - E + kd f_i^T B y_o; the mean of both directions of light, which are equal but for
-// noise.
+// exchange = p_i^T f_o - E + kd f_i^T B y_o. What is kept is the mean of both directions of light, which are
+// equal but for noise.
 #pragma once
 
 #include <span>
@@ -24,7 +25,7 @@
 
 namespace sunbeam {
 
-// At one optical depth tau.
+// Sums the visits at one optical depth tau.
 class ExchangeSolver {
  public:
   static constexpr int kNodes = 64;
@@ -33,17 +34,17 @@ class ExchangeSolver {
 
   static const Axis& cosines();  // m_a
 
-  // Light along one direction as it arrives.
+  // Describes light along one direction as it arrives at the base.
   struct Arrived {
     Vector p;  // empty where light passes straight on: all at one cosine, and one visit is E
     Vector f;
     double below;  // m of E
   };
   Arrived straight_on(double m) const;
-  // `p` not yet divided by A(w).
+  // Takes `p` not yet divided by A(w).
   Arrived bent(Vector p, double m) const;
 
-  // Of all pairs, row by row.
+  // Writes the exchange of all pairs of `ends`, row by row.
   void exchange(std::span<const Arrived> ends, const Matrix& b, double albedo, float* values) const;
 
  private:

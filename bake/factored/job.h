@@ -1,6 +1,6 @@
-// Values of the factored encoding (sunbeam/detail/factors.h) by random walks: the legs of legs.h, each
-// weighted with the film's powers at all fringe orders and the pigment's at all optical depths. The random
-// numbers are the same at every base IOR, so that noise does not ripple along a slider.
+// This job makes the values of the factored encoding (sunbeam/detail/factors.h) by random walks. It walks the
+// legs of legs.h, each weighted with the film's powers at all fringe orders and the pigment's at all optical
+// depths. The random numbers are the same at every base IOR, so that noise does not ripple along a slider.
 //
 // With path "sum" one leg in, one back and one out say all (arrival.h, returned.h); with "product"
 // a walk is a chain of them (exchange.h).
@@ -11,8 +11,8 @@
 
 namespace sunbeam {
 
-// `recipe` must outlive the job. The table's `noise` is the relative standard error of A A, root mean square
-// over all cells.
+// Makes the job, which `recipe` must outlive. The table's `noise` is the relative standard error of A A, root
+// mean square over all cells.
 std::unique_ptr<BakeJob> factored_job(const Recipe& recipe, std::uint64_t seed);
 
 }  // namespace sunbeam

@@ -1,5 +1,5 @@
-// Legs of walks between a film and its base: from outside through the film to the base, or from the base to
-// the film and back.
+// This file walks the legs between a film and its base: from outside through the film to the base, or from
+// the base to the film and back.
 //
 // A leg chooses its direction by facets alone, which know neither thickness nor wavelength, pigment nor
 // albedo. So the same legs serve every fringe order, optical depth and albedo, and what the film lets through
@@ -14,20 +14,20 @@
 
 namespace sunbeam {
 
-// Where light is and how much of it, film and pigment aside.
+// Says where light is and how much of it there is, film and pigment aside.
 struct Leg {
   double facet_cosine;  // with the film's facet, on the side it is met from
   double from, to;      // cosines: base side; `from` only of a return
   double weight;
 };
 
-// `material` must outlive the legs.
+// Draws the legs of a film. `material` must outlive it.
 class FilmLegs {
  public:
   explicit FilmLegs(const Material& material) : material_(material), film_(material) {}
 
-  // From outside along w to the base; the weights of a replicate add up to the share of w that facets let by.
-  // strata^2 legs, one of a smooth film.
+  // Visits legs from outside along w to the base: strata^2 of them, or one if the film is smooth. Their
+  // weights add up to the share of w that facets let by.
   template <class Visit>
   void visit_arrivals(const Vec3& w, std::size_t strata, Rng rng, Visit visit) const {
     if (material_.is_smooth()) strata = 1;
@@ -39,8 +39,8 @@ class FilmLegs {
     }
   }
 
-  // From the base, along its cosine law, to the film and back. `up` strata over the base's cosine^2, with a
-  // quarter of it of facets each way.
+  // Visits legs from the base, along its cosine law, to the film and back. There are `up` strata over the
+  // base's cosine^2, and a quarter of that number over facets each way.
   template <class Visit>
   void visit_returns(std::size_t up, Rng rng, Visit visit) const {
     constexpr std::size_t kFacetsOfUp = 4;
@@ -68,7 +68,7 @@ class FilmLegs {
   FilmGeometry film_;
 };
 
-// Powers of one film at all nodes of a fringe axis, for one facet cosine after the other.
+// Computes the powers of one film at all nodes of a fringe axis, for one facet cosine after the other.
 class FringePowers {
  public:
   // `order` is the fringe order of a film of one wavelength's thickness.

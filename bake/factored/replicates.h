@@ -1,4 +1,4 @@
-// Independent estimates of the same numbers, whose spread is their noise.
+// This file collects independent estimates of the same numbers, whose spread is their noise.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace sunbeam {
 
 inline constexpr std::size_t kReplicates = 4;
 
-// Mean of replicates, and the variance of that mean.
+// Keeps the mean of replicates and the variance of that mean.
 class Replicates {
  public:
   explicit Replicates(std::size_t size) : sum_(size), squares_(size) {}
@@ -30,7 +30,7 @@ class Replicates {
   std::vector<double> sum_, squares_;
 };
 
-// Strata of a replicate, doubled until the noise is low enough.
+// Bounds the strata of a replicate, which are doubled until the noise is low enough.
 struct Strata {
   std::size_t least, most;
 };

@@ -9,8 +9,8 @@
 
 namespace sunbeam {
 
-// How many strata over the base's cosine the recipe's accuracy.noise asks for; the walks that this took and
-// the noise go to `summary`.
+// Returns how many strata over the base's cosine the recipe's accuracy.noise asks for. The walks that this
+// took and the noise go to `summary`.
 std::size_t strata_of_returns(const SharedInputs& bake, const Material& material, const FilmLegs& legs,
                               BlockSummary& summary);
 
@@ -30,7 +30,7 @@ void visit_returns(const SharedInputs& bake, const Material& material, const Axi
     });
 }
 
-// At (depth, order).
+// Makes the values at one base IOR, at (depth, order).
 Block walk_returned(const SharedInputs& bake, std::size_t ior);
 
 // Puts the values of such a block into `array`.

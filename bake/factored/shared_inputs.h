@@ -1,4 +1,4 @@
-// What all tasks of a factored bake by walks share.
+// This file holds what all tasks of a factored bake share.
 #pragma once
 
 #include "bake/factored/axes.h"
@@ -7,7 +7,7 @@
 
 namespace sunbeam {
 
-// `recipe` must outlive it.
+// Prepares the inputs of all tasks. `recipe` must outlive it.
 struct SharedInputs {
   SharedInputs(const Recipe& recipe, std::uint64_t seed)
       : recipe(recipe), seed(seed), shapes(factor_shapes(recipe)) {
@@ -25,7 +25,8 @@ struct SharedInputs {
     return material;
   }
 
-  // One random stream a direction and replicate, and others for returns: the same at every base IOR.
+  // These return one random stream a direction and replicate, and others for returns. They are the same at
+  // every base IOR.
   Rng rng_of_arrivals(std::size_t direction, std::size_t replicate) const {
     return Rng(seed, direction * kReplicates + replicate);
   }

@@ -1,4 +1,5 @@
-// Bakes a recipe: which encodings may hold it, the job that makes one, and all of it in memory at once.
+// This file bakes a recipe: it says which encodings may hold it, makes the job for one of them, or bakes a
+// whole table in memory.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +10,17 @@
 
 namespace sunbeam {
 
-// What the recipe asks for, or what can hold its material, the smallest in memory first.
+// Returns the encoding that the recipe asks for, or those that can hold its material, the smallest in memory
+// first.
 std::vector<Encoding> encodings_of(const Recipe& recipe);
 
-// Throws Error if the table would be larger than a machine can be expected to hold.
+// Throws Error if the table would be larger than a computer can be expected to hold.
 void require_reasonable_size(const Recipe& recipe, Encoding encoding);
 
-// Of the table's arrays, uncompressed.
+// Returns the bytes of the table's arrays, uncompressed.
 double bytes_of(const Recipe& recipe, Encoding encoding);
 
-// `recipe` must outlive the job.
+// Makes the job, which `recipe` must outlive.
 std::unique_ptr<BakeJob> make_job(const Recipe& recipe, Encoding encoding, std::uint64_t seed);
 
 struct BakeSettings {
@@ -27,10 +29,10 @@ struct BakeSettings {
   std::function<void(double fraction)> on_progress;  // now and then, one thread at a time
 };
 
-// The same recipe and seed give the same bits for every thread count. info holds everything but the measured
-// error.
+// Bakes a table in the given encoding. The same recipe and seed give the same bits for every thread count.
+// info holds everything but the measured error.
 Table bake_table(const Recipe& recipe, Encoding encoding, const BakeSettings& settings);
-// In the first of encodings_of().
+// Bakes a table in the first of encodings_of().
 Table bake_table(const Recipe& recipe, const BakeSettings& settings);
 
 }  // namespace sunbeam

@@ -1,4 +1,5 @@
-// What follows the last block of a bake, wherever the blocks are: measure the table's error, write it.
+// This file does what follows the last block of a bake, wherever the blocks are: it measures the table's
+// error and writes the table.
 #pragma once
 
 #include <functional>
@@ -13,13 +14,13 @@ inline constexpr int kCheckPoints = 250;  // of the error that a table carries
 
 class FinishedBake {
  public:
-  // `blocks` must have all of the job's, and outlive this, as recipe and job must.
+  // `blocks` must have all blocks of the job. They, the recipe and the job must outlive this.
   FinishedBake(const Recipe& recipe, const BakeJob& job, const Blocks& blocks);
 
   // Stores the figures of `sunbeam verify TABLE --points POINTS` in the table, and returns them.
   VerifyReport measure_error(int points, int threads, std::function<void(double fraction)> on_progress);
 
-  // .exr: in memory for some nodes only.
+  // Writes the table. An .exr is in memory for some nodes at a time only.
   void save(const std::string& path) const;
 
   const std::map<std::string, std::string>& info() const { return table_.head().info; }

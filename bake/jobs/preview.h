@@ -1,11 +1,11 @@
-// A coarse table of the same material in seconds.
+// This file makes recipes for a preview: a coarse table of the same material in seconds.
 #pragma once
 
 #include "bake/recipe/recipe.h"
 
 namespace sunbeam {
 
-// The recipe with fewer nodes and more noise.
+// Returns the recipe with fewer nodes and more noise.
 Recipe preview_of(const Recipe& recipe);
 
 }  // namespace sunbeam

@@ -1,4 +1,4 @@
-// OUTPUT.work: what an unfinished bake has done so far. It holds one journal an encoding.
+// The folder OUTPUT.work keeps what an unfinished bake has done so far. It holds one journal an encoding.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
-// CIE 1931 2-degree standard colorimetric observer and illuminants D65 and E, 380 to 780 nm.
+// This file holds the CIE 1931 2-degree standard colorimetric observer and the illuminants D65 and E, 380 to
+// 780 nm.
 //
 // The numbers are those of the official tables at 5 nm in CIE 015:2018: colour-matching functions of ISO/CIE
 // 11664-1 (also DOI 10.25039/CIE.DS.xvudnb9b) and D65 of ISO/CIE 11664-2 (also DOI 10.25039/CIE.DS.hjfjmt59).
@@ -14,7 +15,7 @@ namespace sunbeam {
 
 enum class Illuminant { d65, e };
 
-// As recipes and tables spell it: "D65", "E".
+// Returns the name that recipes and tables use: "D65", "E".
 constexpr std::string_view to_string(Illuminant illuminant) {
   return illuminant == Illuminant::e ? "E" : "D65";
 }
@@ -22,13 +23,15 @@ constexpr std::string_view to_string(Illuminant illuminant) {
 inline constexpr double kShortestVisibleNm = 380;
 inline constexpr double kLongestVisibleNm = 780;
 
-// x-bar, y-bar, z-bar at a wavelength in nm: dimensionless, y-bar = 1 at 555 nm, zero outside 380 to 780 nm.
+// Returns x-bar, y-bar, z-bar at a wavelength in nm. They are dimensionless, with y-bar = 1 at 555 nm, and
+// zero outside 380 to 780 nm.
 Vec3 observer(double wavelength_nm);
 
-// Relative power per nm: D65 is 100 at 560 nm, E is 100 everywhere; zero outside 380 to 780 nm.
+// Returns the relative power per nm: D65 is 100 at 560 nm, E is 100 everywhere; zero outside 380 to 780 nm.
 double illuminant_power(Illuminant illuminant, double wavelength_nm);
 
-// Tristimulus values of the illuminant itself with Y = 1: the sum of 401 terms from 380 to 780 nm.
+// Returns the tristimulus values of the illuminant itself with Y = 1: the sum of 401 terms from 380 to 780
+// nm.
 Vec3 illuminant_white(Illuminant illuminant);
 
 }  // namespace sunbeam

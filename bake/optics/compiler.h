@@ -1,4 +1,4 @@
-// What the kernels ask of the compiler (GCC and Clang).
+// This file holds what the kernels ask of the compiler (GCC and Clang).
 #pragma once
 
 #if defined(__SANITIZE_ADDRESS__)

@@ -1,6 +1,7 @@
-// Gauss-Legendre quadrature on [0, 1]: Int_0^1 f dx = sum weight f(node), exact for polynomials of degree
-// 2 count - 1. Nodes by Newton's method on the Legendre recurrence (DLMF 3.5(v)), to rounding.
-// Interpolation through the same nodes by the barycentric formula (Berrut and Trefethen 2004).
+// This file holds Gauss-Legendre quadrature on [0, 1]: Int_0^1 f dx = sum weight f(node), exact for
+// polynomials of degree 2 count - 1. Newton's method on the Legendre recurrence (DLMF 3.5(v)) finds the
+// nodes, to rounding. Interpolation goes through the same nodes by the barycentric formula (Berrut and
+// Trefethen 2004).
 #pragma once
 
 #include <array>
@@ -50,7 +51,7 @@ class GaussInterpolation {
   const GaussRule& rule() const { return rule_; }
   int size() const { return rule_.size(); }
 
-  // The polynomial through f at the nodes, at x: sum weights[k] f(node[k]).
+  // Returns the weights of the polynomial through f at the nodes: at x it is sum weights[k] f(node[k]).
   Weights at(double x) const {
     Weights weights{};
     double sum = 0;

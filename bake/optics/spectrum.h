@@ -1,9 +1,11 @@
-// How a recipe sees colour: the wavelengths that are computed, the base at each of them, and their fold.
+// This file says how a recipe sees colour: which wavelengths are computed, what the base is at each of them,
+// and how they are folded.
 //
 // rgb3  650, 510 and 475 nm are taken as the linear channels R, G, B, which whoever shows them reads as
-// Rec.709. full  the nodes of a fitted quadrature (docs/theory/color.md) fold into a linear colour space
-// under an illuminant. The
-//       albedo has a spectrum, given or uplifted from RGB, and the pigment's absorption a relative spectrum.
+//       Rec.709.
+// full  The nodes of a fitted quadrature (docs/theory/color.md) fold into a linear colour space under an
+//       illuminant. The albedo has a spectrum, given or uplifted from RGB, and the pigment's absorption a
+//       relative spectrum.
 //
 // Material::albedo is in the space of the fold; artists write Rec.709, and from_rec709() takes them there.
 #pragma once
@@ -16,7 +18,7 @@
 
 namespace sunbeam {
 
-// Longest optical path 2 n1 d0 (nm) that `nodes` wavelengths resolve.
+// Returns the longest optical path 2 n1 d0 (nm) that `nodes` wavelengths resolve.
 constexpr double resolved_path_nm(std::size_t nodes) {
   return kDefaultLargestPathNm / kDefaultNodes * static_cast<double>(nodes);
 }
@@ -25,35 +27,37 @@ class Spectrum {
  public:
   Spectrum() = default;  // rgb3
 
-  // full, for films up to an optical path 2 n1 d0 (nm). Throws Error if that asks for more than
-  // kMostWavelengths.
+  // Makes the spectrum "full", for films up to an optical path 2 n1 d0 (nm). Throws Error if that asks for
+  // more than kMostWavelengths.
   Spectrum(Illuminant illuminant, ColorSpace color_space, double longest_path_nm,
            AbsorptionShape absorption = AbsorptionShape::flat());
 
   bool is_full() const { return quadrature_.size() > 0; }
   ColorSpace color_space() const { return color_space_; }
 
-  // A linear Rec.709 colour in the space of the fold; unchanged in rgb3.
+  // Takes a linear Rec.709 colour to the space of the fold; it is unchanged in rgb3.
   Rgb from_rec709(const Rgb& color) const;
 
   // Sets the spectral albedo (reflectances 0 to 1) that belongs to the RGB albedo returned: its fold at the
-  // nodes, in 0 to 1 (a spectrum outside the gamut keeps its own values; only this RGB is clamped). full
-  // only.
+  // nodes, in 0 to 1 (a spectrum outside the gamut keeps its own values; only this RGB is clamped). It may be
+  // called in full only.
   Rgb set_albedo(const SpectralCurve& albedo);
   // Uplifts an RGB albedo in the space of the fold now, so that wavelengths() need not. Throws Error if no
-  // reflectance has the colour. full only.
+  // reflectance has the colour. It may be called in full only.
   void set_albedo(const Rgb& albedo);
 
-  // What the live model carries. An albedo other than the one set is uplifted on the way. full: throws Error
-  // if no reflectance has the albedo, or if the film is thicker than the nodes resolve.
+  // Returns the wavelengths that the live model carries. An albedo other than the one set is uplifted on the
+  // way. In full it throws Error if no reflectance has the albedo, or if the film is thicker than the nodes
+  // resolve.
   Wavelengths wavelengths(const Material& material) const;
 
-  // One wavelength (nm, vacuum) in every channel. rgb3: the albedo's first channel, flat absorption. full:
-  // albedo and absorption at that wavelength; an uplifted albedo is joined by straight lines, constant beyond
-  // the nodes.
+  // Returns one wavelength (nm, vacuum) for every channel. In rgb3 it has the albedo's first channel and flat
+  // absorption, in full the albedo and absorption at that wavelength; an uplifted albedo is joined by
+  // straight lines, constant beyond the nodes.
   Wavelengths monochromatic(const Material& material, double nm) const;
 
-  // Attributes of a table: spectrum, and in full also color_space, illuminant, wavelengths (nm, ascending).
+  // Returns the attributes of a table: spectrum, and in full also color_space, illuminant, wavelengths (nm,
+  // ascending).
   std::map<std::string, std::string> attributes() const;
 
  private:

@@ -1,4 +1,5 @@
-// One thin film between two half-spaces: Airy reflectance and transmittance of unpolarised light.
+// This file computes the Airy reflectance and transmittance of unpolarised light at one thin film between two
+// half-spaces.
 //
 // With s = sin(theta_0), c_j the cosine in medium j, k = 2 pi n1 d / lambda and the admittances
 // q_j = n_j c_j (s-polarised) or c_j / n_j (p-polarised), the amplitude of the infinite sum of reflections
@@ -32,7 +33,7 @@ struct ThinFilm {
   static ThinFilm of(const Material& m) {
     return {m.exterior_ior, m.film_ior, m.base_ior, m.film_thickness_nm};
   }
-  // As light below meets it; in "straight" mode as light outside does.
+  // Returns the film as light below meets it; in "straight" mode it is met as from outside.
   static ThinFilm below(const Material& m) {
     return m.transmission == Transmission::straight ? of(m) : of(m).reversed();
   }
@@ -44,20 +45,20 @@ struct FilmPower {
   Rgb transmittance;  // 1 - R: the film absorbs nothing
 };
 
-// Powers at the cosine of the angle in the exterior medium (0 <= cos_exterior <= 1), for three vacuum
-// wavelengths in nm at once. R = 1 where exterior_ior * sin >= base_ior.
+// Returns the powers at the cosine of the angle in the exterior medium (0 <= cos_exterior <= 1), for three
+// vacuum wavelengths in nm at once. R = 1 where exterior_ior * sin >= base_ior.
 FilmPower airy(const ThinFilm& film, double cos_exterior, const Rgb& wavelengths_nm);
 
-// n0 / n2 if light bends when it passes the film, else 1: "straight", or media so alike that the half vector
-// of a crossing has no digits left.
+// Returns n0 / n2 if light bends when it passes the film, else 1. It does not bend in "straight" mode, nor
+// between media so alike that the half vector of a crossing has no digits left.
 inline double bending_index_ratio(const Material& material) {
   constexpr double kIndexMatch = 1e-7;
   const double ratio = material.exterior_ior / material.base_ior;
   return material.transmission == Transmission::straight || std::abs(ratio - 1) <= kIndexMatch ? 1 : ratio;
 }
 
-// Squared cosine on the far side by Snell's law; negative under total reflection. Arranged so that equal
-// media keep every digit at grazing.
+// Returns the squared cosine on the far side by Snell's law; it is negative under total reflection. The
+// formula is arranged so that equal media keep every digit at grazing.
 inline double refracted_cosine_squared(double ior_from, double ior_to, double cos_from) {
   return ((ior_to - ior_from) * (ior_to + ior_from) + square(ior_from * cos_from)) / square(ior_to);
 }

@@ -1,4 +1,4 @@
-// What a table says of the bake that made it.
+// This file makes the attributes by which a table describes the bake that made it.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace sunbeam {
 
-// Attributes of a table but for its measured error.
+// Returns the attributes of a table but for its measured error.
 std::map<std::string, std::string> info_of(const Recipe& recipe, Encoding encoding, std::uint64_t seed,
                                            std::uint64_t walks, const char* estimator);
 

@@ -1,5 +1,5 @@
-// A recipe: what to bake, over which grid, how finely and how accurately. TOML; keys as in
-// docs/reference/recipe.md.
+// A recipe says what to bake, over which grid, how finely and how accurately. It is written in TOML;
+// docs/reference/recipe.md lists the keys.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@
 
 namespace sunbeam {
 
-// Where the nodes of a dense table come from. automatic: adding and doubling where it solves the material
-// (live/adding_doubling/slab_solver.h), else walks.
+// Says where the values of a dense table come from. `automatic` takes adding and doubling where it solves the
+// material (live/adding_doubling/slab_solver.h), else walks.
 enum class TableValues { automatic, walks };
 
 inline constexpr int kMostDirectionNodes = 512;  // of table.angles and table.azimuths
@@ -29,8 +29,9 @@ struct Recipe {
 
   struct {
     int angles = 12;  // nodes over cos(theta), for wi and wo alike
-    // Dense: nodes over |dphi| in [0, pi]; 1 where the rest has no azimuth. Of an anisotropic film: nodes
-    // over phi_o in [0, 2 pi), a multiple of 4, and azimuths / 4 + 1 over phi_i in [0, pi/2].
+    // In a dense table these are the nodes over |dphi| in [0, pi]; 1 where the rest has no azimuth. An
+    // anisotropic film has this many nodes over phi_o in [0, 2 pi), a multiple of 4, and azimuths / 4 + 1
+    // over phi_i in [0, pi/2].
     int azimuths = 1;
     Precision precision = Precision::half_float;
     Encoding encoding = Encoding::automatic;
@@ -38,8 +39,8 @@ struct Recipe {
   } table;
 
   struct {
-    // Relative standard error allowed of any tabulated value; unless given, tolerance_median, at most
-    // 0.005.
+    // This relative standard error is allowed of any tabulated value. Unless given it is tolerance_median, at
+    // most 0.005.
     double noise = 0.005;
     double tolerance_median = 0.01;  // of verify's error
     double tolerance_p99 = 0.05;
@@ -57,16 +58,17 @@ inline Symmetry symmetry_of(const Recipe& recipe) {
   return recipe.material.roughness.is_isotropic() ? Symmetry::isotropic : Symmetry::anisotropic;
 }
 
-// True if a dense table of the recipe is solved, false if it is walked.
+// Returns true if a dense table of the recipe is solved, false if it is walked.
 inline bool is_solved(const Recipe& recipe) {
   return recipe.table.values == TableValues::automatic && has_solution(recipe.material);
 }
 
-// `overrides` are "section.key=value". Throws Error for anything unknown, missing or out of range.
+// Reads a recipe from a file or a text. `overrides` are "section.key=value". Throws Error for anything
+// unknown, missing or out of range.
 Recipe load_recipe(const std::string& path, const std::vector<std::string>& overrides = {});
 Recipe parse_recipe(const std::string& text, const std::string& name,
                     const std::vector<std::string>& overrides = {});
-// The recipe that a table was baked from. Keys that recipes had once and have no more are passed over.
+// Reads the recipe that a table was baked from. Keys that recipes had once and have no more are passed over.
 Recipe parse_stored_recipe(const std::string& text, const std::string& name);
 
 }  // namespace sunbeam

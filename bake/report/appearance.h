@@ -1,5 +1,5 @@
-// What the pictures of a report ask of a material, from a table or live: its parts, deterministic, in linear
-// Rec.709. Each is symmetric in its two directions.
+// This file answers what the pictures of a report ask of a material, from a table or live. The answers are
+// its parts, deterministic, in linear Rec.709; each is symmetric in its two directions.
 #pragma once
 
 #include <memory>
@@ -22,7 +22,7 @@ class Appearance {
   virtual const Material& material() const = 0;
   virtual Rgb first(const Vec3& a, const Vec3& b) const = 0;  // 1/sr
   virtual Rgb dirac(const Vec3& a) const = 0;                 // weight of a smooth film's mirror direction
-  // For every b; 1/sr. Live walks from a serve them all.
+  // Returns the rest for every b, 1/sr. Live walks from a serve them all.
   virtual std::vector<Rgb> rest(const Vec3& a, std::span<const Vec3> b) const = 0;
 };
 
@@ -42,12 +42,12 @@ class TableAppearance final : public Appearance {
   ColorMatrix to_rec709_;
 };
 
-// Estimates of a live direction where there is no exact evaluator: of a picture's thousands, of a curve's
-// few.
+// These are the estimates of a live direction where there is no exact evaluator: a picture has thousands of
+// directions, a curve has few.
 inline constexpr int kPictureEstimates = 16, kCurveEstimates = 512;
 
-// Exact where a renderer's exact evaluator is valid, else walks that use the same random numbers at every
-// direction `a`: what noise is left varies smoothly over a picture.
+// Evaluates the live model. It is exact where a renderer's exact evaluator is valid; else walks use the same
+// random numbers at every direction `a`, so that what noise is left varies smoothly over a picture.
 class LiveAppearance final : public Appearance {
  public:
   LiveAppearance(const Material& material, const Spectrum& spectrum, int estimates);
@@ -68,7 +68,7 @@ class LiveAppearance final : public Appearance {
   ColorMatrix to_rec709_;
 };
 
-// How the rest of LiveAppearance is found, for a caption.
+// Says how the rest of LiveAppearance is found, for a caption.
 std::string live_method(const Material& material, int estimates);
 
 }  // namespace sunbeam

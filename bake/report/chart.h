@@ -1,5 +1,5 @@
-// Line and scatter charts as SVG fragments. Frame and text take the colour of their surroundings
-// (currentColor), so that a chart suits a light page and a dark one.
+// This file draws line and scatter charts as SVG fragments. Frame and text take the colour of their
+// surroundings (currentColor), so that a chart suits a light page and a dark one.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace sunbeam {
 
-// Readable on white and on near-black.
+// These colours are readable on white and on near-black.
 inline constexpr std::string_view kRgbColors[3] = {"#e5484d", "#30a46c", "#3e82f7"};
 inline constexpr std::string_view kPointColor = "#7c8db5";
 inline constexpr std::string_view kMedianColor = "#3e82f7";
@@ -56,17 +56,17 @@ class Chart {
   std::string content_;
 };
 
-// One text, `anchor` start, middle or end.
+// Returns one text; `anchor` is start, middle or end.
 std::string svg_text(double x, double y, std::string_view anchor, std::string_view text);
-// A short coloured line and its name for each; returns one row starting at (x, y).
+// A legend shows a short coloured line and its name for each entry, in one row that starts at (x, y).
 struct LegendEntry {
   std::string_view color, name;
 };
 std::string svg_legend(double x, double y, std::span<const LegendEntry> entries);
 
-// A fragment inside a page; `title` is what a screen reader says.
+// Returns a fragment for use inside a page; `title` is what a screen reader says.
 std::string inline_svg(double width, double height, std::string_view title, std::string_view content);
-// The same as a file of its own, on white.
+// Returns the same as a file of its own, on white.
 std::string svg_document(double width, double height, std::string_view title, std::string_view content);
 
 }  // namespace sunbeam

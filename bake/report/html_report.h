@@ -1,4 +1,4 @@
-// The report of a verification as one page that needs no other file.
+// This file writes the report of a verification as one page that needs no other file.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// How the report looks, light and dark.
+// This style sheet says how the report looks, light and dark.
 #pragma once
 
 namespace sunbeam {

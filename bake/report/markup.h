@@ -1,4 +1,4 @@
-// Text and pictures inside HTML and SVG.
+// This file prepares text and pictures for use inside HTML and SVG.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace sunbeam {
 
-// With the characters escaped that mean something in markup, in attributes too.
+// Escapes the characters that mean something in markup, so that the text also fits in attributes.
 std::string escape_markup(std::string_view text);
 
 std::string base64(std::string_view bytes);
 
-// A linear Rec.709 picture as a PNG inside a URI, so that a page needs no other file.
+// Returns a linear Rec.709 picture as a PNG inside a URI, so that a page needs no other file.
 std::string png_data_uri(const Image& image);
 
 }  // namespace sunbeam

@@ -1,6 +1,6 @@
-// BRDF times cosine over theta_o in the plane of incidence, for R, G and B: the table as thin lines over the
-// live model as thick pale ones. The radius is the square root of the value, so that a narrow highlight does
-// not hide the rest.
+// This chart shows BRDF times cosine over theta_o in the plane of incidence, for R, G and B. The table's thin
+// lines lie over the thick pale ones of the live model. The radius is the square root of the value, so that a
+// narrow highlight does not hide the rest.
 #pragma once
 
 #include <string>
@@ -11,7 +11,8 @@ namespace sunbeam {
 
 inline constexpr double kPolarWidth = 340, kPolarHeight = 232;
 
-// SVG fragment of that size. A smooth film's Dirac appears as a dashed line in the mirror direction.
+// Returns an SVG fragment of that size. A smooth film's Dirac appears as a dashed line in the mirror
+// direction.
 std::string polar_chart(const Appearance& table, const Appearance& live, const Vec3& wi);
 
 }  // namespace sunbeam

@@ -1,4 +1,5 @@
-// The film's reflectance: its colour over thickness and angle, and R, G, B over the angle at one thickness.
+// This chart shows the film's reflectance: its colour over thickness and angle, and R, G, B over the angle at
+// one thickness.
 #pragma once
 
 #include <string>
@@ -9,7 +10,7 @@ namespace sunbeam {
 
 inline constexpr double kReflectanceWidth = 560, kReflectanceHeight = 520;
 
-// SVG fragment. Throws Error if the parameters lie outside the table.
+// Returns an SVG fragment of that size. Throws Error if the parameters lie outside the table.
 std::string reflectance_chart(const Table& table, const Parameters& parameters);
 
 }  // namespace sunbeam

@@ -1,6 +1,6 @@
-// A sphere of a material, seen in parallel projection, under one directional light and a grey sky that is
-// bright at the horizon. Fixed directions, no randomness: a table and the live model are comparable pixel by
-// pixel.
+// This picture shows a sphere of a material, seen in parallel projection, under one directional light and a
+// grey sky that is bright at the horizon. Directions are fixed and nothing is random, so that a table and the
+// live model are comparable pixel by pixel.
 #pragma once
 
 #include "bake/report/appearance.h"

@@ -1,4 +1,4 @@
-// The BSDFs of a scene: tables, live models or plain diffuse ones.
+// This file makes the BSDFs of a scene: tables, live models or plain diffuse ones.
 #pragma once
 
 #include <memory>
@@ -15,9 +15,9 @@
 
 namespace sunbeam {
 
-// One BSDF for each material of the scene, in linear Rec.709, the tracer's space. Reads the scene's table or
-// recipe, whichever `mode` ("table", "live", "diffuse") needs, and writes the parameters that a skin takes
-// from it into the scene. Throws Error naming the file and the material. Where parameters vary over a
+// Holds one BSDF for each material of the scene, in linear Rec.709, the tracer's space. Reads the scene's
+// table or recipe, whichever `mode` ("table", "live", "diffuse") needs, and writes the parameters that a skin
+// takes from it into the scene. Throws Error naming the file and the material. Where parameters vary over a
 // surface, a table clamps them to its grid, with a warning, and the live model is made anew at every hit,
 // which is slow.
 class SceneMaterials {
@@ -26,9 +26,9 @@ class SceneMaterials {
 
   std::span<const SurfaceBsdf> bsdfs() const { return bsdfs_; }
   const std::string& table_hash() const { return table_hash_; }
-  // The live skins' evaluators, by name; empty if there are none.
+  // Returns the names of the live skins' evaluators; empty if there are none.
   std::string estimators() const;
-  // A line each, for people.
+  // Returns the warnings for people, a line each.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:

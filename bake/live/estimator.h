@@ -1,4 +1,5 @@
-// Which evaluator of the live model made a value, and which one `--estimator auto` takes.
+// This file names the evaluator of the live model that made a value, and says which one `--estimator auto`
+// takes.
 #pragma once
 
 #include <string>
@@ -9,10 +10,11 @@
 
 namespace sunbeam {
 
-// pfmc: unidirectional. exact: ExactRest where single values are asked for, ExactBsdf where a renderer asks.
+// Names an evaluator. pfmc is the unidirectional one; exact is ExactRest where single values are asked for,
+// ExactBsdf where a renderer asks.
 enum class Estimator { automatic, pfmc, bidirectional, exact };
 
-// As written in tables and reports.
+// Returns the name that tables and reports use.
 constexpr const char* name_of(Estimator estimator) {
   switch (estimator) {
     case Estimator::automatic:
@@ -27,7 +29,7 @@ constexpr const char* name_of(Estimator estimator) {
   return "";
 }
 
-// From the command line's "auto", "pfmc", "bidirectional" or "exact".
+// Reads the command line's "auto", "pfmc", "bidirectional" or "exact".
 constexpr Estimator estimator_of(std::string_view option) {
   if (option == "auto") return Estimator::automatic;
   if (option == "bidirectional") return Estimator::bidirectional;
@@ -43,17 +45,17 @@ struct EstimatorChoice {
   std::string reason;   // why auto takes it; one line
 };
 
-// For single values.
+// Returns the choice for single values.
 EstimatorChoice automatic_for_eval(const Material& material);
-// For a renderer, which needs thousands of values a millisecond.
+// Returns the choice for a renderer, which needs thousands of values a millisecond.
 EstimatorChoice automatic_for_render(const Material& material);
 
-// What `wanted` stands for. All throw Error naming the key and what is allowed if it is exact and the
-// material has no (fast) exact evaluator.
+// These return what `wanted` stands for. All throw Error naming the key and what is allowed if it is exact
+// and the material has no (fast) exact evaluator.
 Estimator estimator_for_eval(Estimator wanted, const Material& material);
 Estimator estimator_for_render(Estimator wanted, const Material& material);
-// Of a table's errors: exact also where adding and doubling solve the material
-// (live/adding_doubling/slab_solver.h).
+// Returns the estimator that a table's errors are measured with. exact is allowed also where adding and
+// doubling solve the material (live/adding_doubling/slab_solver.h).
 Estimator estimator_for_truth(Estimator wanted, const Material& material);
 
 }  // namespace sunbeam

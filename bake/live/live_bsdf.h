@@ -1,4 +1,5 @@
-// The live model behind the BSDF contract: eval and pdf are unbiased estimates from one packet of walks.
+// This file puts the live model behind the BSDF contract: eval and pdf are unbiased estimates from one packet
+// of walks.
 //
 // With many wavelengths every call draws kHeroes of them at random, in proportion to their share in colour
 // and spread evenly over it (Wilkie et al. 2014: one random hero, the others at fixed distances from it), and
@@ -17,16 +18,16 @@ class LiveBsdf final : public Bsdf {
 
   LiveBsdf(const Material& material, const Wavelengths& wavelengths,
            Technique technique = Technique::unidirectional);
-  // The paper's three wavelengths.
+  // Carries the paper's three wavelengths.
   explicit LiveBsdf(const Material& material) : LiveBsdf(material, Wavelengths::rgb3(material)) {}
 
   Rgb eval(const Vec3& wo, const Vec3& wi, Rng& rng) const override;
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override;
   double pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const override;
 
-  // The first-surface density, and for the rest the chance of entering a smooth film at wo times the density
-  // of leaving it after a visit of the base; both from tables over the cosine. How far it is off is measured
-  // in docs/theory/live.md.
+  // Returns the first-surface density plus, for the rest, the chance of entering a smooth film at wo times
+  // the density of leaving it after a visit of the base. Both come from tables over the cosine. How far it is
+  // off is measured in docs/theory/live.md.
   double mis_pdf(const Vec3& wo, const Vec3& wi) const override;
   bool is_isotropic() const override { return is_isotropic_; }
 

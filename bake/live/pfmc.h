@@ -1,4 +1,4 @@
-// Position-free Monte Carlo (Guo, Hasan, Zhao 2018) for the layered skin.
+// This file estimates the BSDF of the layered skin by position-free Monte Carlo (Guo, Hasan, Zhao 2018).
 //
 // A path is a sequence of directions only. Its value f(wo, wi) is the sum over all paths that enter along wi
 // and leave along wo; here split into
@@ -37,12 +37,12 @@ class Pfmc {
  public:
   Pfmc(const Material& material, const Wavelengths& wavelengths,
        const walk::Kernels& kernels = walk::best_kernels());
-  // The paper's three wavelengths.
+  // Carries the paper's three wavelengths.
   explicit Pfmc(const Material& material) : Pfmc(material, Wavelengths::rgb3(material)) {}
 
   int wavelengths() const { return layers_.count; }
 
-  // Directions wo that share a walk in add_rest().
+  // Returns how many directions wo share a walk in add_rest().
   std::size_t exits_per_walk() const {
     return family_ == Family::plain ? std::numeric_limits<std::size_t>::max() : walk::GeneralWalk::kMostExits;
   }
@@ -51,13 +51,13 @@ class Pfmc {
     return family_ == Family::general ? walk::GeneralWalk::kWalks : walk::kLanes;
   }
 
-  // Film reflectance from outside. Exact.
+  // Returns the film's reflectance from outside. It is exact.
   Rgb film_reflectance(double cos_exterior) const;
 
-  // First-surface value in 1/sr; 0 for a smooth film. Exact.
+  // Returns the first-surface value in 1/sr; 0 for a smooth film. It is exact.
   Rgb first(const Vec3& wo, const Vec3& wi) const;
 
-  // Weight of the mirror direction; 0 for a rough film. Exact.
+  // Returns the weight of the mirror direction; 0 for a rough film. It is exact.
   Rgb dirac(const Vec3& wo) const;
 
   // Adds one unbiased estimate of rest(wo[k], wi), 1/sr, to sums[k]; the wo share the walks.
@@ -66,34 +66,35 @@ class Pfmc {
   Rgb estimate_rest(const Vec3& wo, const Vec3& wi, Rng& rng,
                     Technique technique = Technique::unidirectional) const;
 
-  // One walk (a single one), the throughput its own: its mean at a given wi is f cos / pdf. At the upper
-  // surface it chooses by the film's reflectance and by what entering is worth over this base, below like the
-  // film does. Empty if lost in the microsurface. What enters the film is carried on by `below`, the same
-  // model at other wavelengths. Its mis_pdf is left at 0.
+  // Draws a direction by a single walk. The throughput is the walk's own: its mean at a given wi is f cos /
+  // pdf. At the upper surface it chooses by the film's reflectance and by what entering is worth over this
+  // base, below like the film does. The result is empty if light is lost in the microsurface. What enters the
+  // film is carried on by `below`, the same model at other wavelengths. Its mis_pdf is left at 0.
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng, const Pfmc& below) const;
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const { return sample(wo, rng, *this); }
 
-  // Unbiased estimate of the density of sample()'s non-Dirac outcomes at wi, 1/sr, from one walk.
+  // Returns an unbiased estimate of the density of sample()'s non-Dirac outcomes at wi, 1/sr, from one walk.
   double estimate_pdf(const Vec3& wo, const Vec3& wi, Rng& rng, const Pfmc& below) const;
   double estimate_pdf(const Vec3& wo, const Vec3& wi, Rng& rng) const {
     return estimate_pdf(wo, wi, rng, *this);
   }
 
-  // Density of choosing the first surface and going to wi, 1/sr. Exact; 0 for a smooth film.
+  // Returns the density of choosing the first surface and going to wi, 1/sr. It is exact; 0 for a smooth
+  // film.
   double first_pdf(const Vec3& wo, const Vec3& wi) const;
 
-  // The chance that sample() chooses reflection at a facet met from outside at this cosine.
+  // Returns the chance that sample() chooses reflection at a facet met from outside at this cosine.
   double reflect_chance(double cos_exterior) const;
-  // Film reflectance as its choices below see it: mean over wavelengths by importance().
+  // Returns the film's reflectance as its choices below see it: the mean over wavelengths by importance().
   double mean_reflectance(double cos_exterior) const;
-  // Density over wi of what leaves after a visit of the base, up to a factor and as if the film were smooth;
-  // the cosine if the material is not plain.
+  // Returns the density over wi of what leaves after a visit of the base, up to a factor and as if the film
+  // were smooth; it is the cosine if the material is not plain.
   double leaving_shape(double cos_exterior) const;
 
-  // The share of wavelength k in choices and in colour: its absolute weights, normalised.
+  // Returns the share of wavelength k in choices and in colour: its absolute weights, normalised.
   double importance(int k) const { return importance_[k]; }
 
-  // The same model at some of its wavelengths, their weights multiplied by `factor`.
+  // at() returns the same model at some of its wavelengths, their weights multiplied by `factor`.
   struct Pick {
     int wavelength;
     double factor;
@@ -101,7 +102,7 @@ class Pfmc {
   Pfmc at(std::span<const Pick> picks) const;
 
  private:
-  // What estimates the rest.
+  // Says what estimates the rest.
   enum class Family { plain, facets, general };
   static Family family_of(const Material& material);
   void forecast_visits();

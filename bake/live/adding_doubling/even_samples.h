@@ -1,4 +1,5 @@
-// Where a smooth even function of u >= 0 is known, and the weights of what is known in its value elsewhere.
+// This file says where a smooth even function of u >= 0 is known, and with which weights what is known enters
+// its value elsewhere.
 #pragma once
 
 #include <algorithm>
@@ -17,10 +18,10 @@ class EvenSamples {
     std::array<double, kStencil> weight{};
   };
 
-  // At these values alone (ascending).
+  // Knows the function at these values alone (ascending).
   explicit EvenSamples(std::vector<double> values) : node_(std::move(values)) {}
-  // From 0 in equal steps to beyond `largest`: polynomials of degree 7 in between, through the mirrored nodes
-  // near 0.
+  // Knows the function in equal steps from 0 to beyond `largest`. In between are polynomials of degree 7,
+  // which go through the mirrored nodes near 0.
   EvenSamples(double step, double largest) : step_(step) {
     const int last = static_cast<int>(std::ceil(largest / step)) + kStencil / 2;
     for (int k = 0; k <= last; ++k) node_.push_back(k * step);
@@ -29,7 +30,7 @@ class EvenSamples {
   std::size_t size() const { return node_.size(); }
   double operator[](std::size_t k) const { return node_[k]; }
 
-  // u must be one of the values, or up to `largest`.
+  // Returns the nodes and weights of the value at u, which must be one of the values, or up to `largest`.
   Stencil at(double u) const {
     Stencil s;
     if (step_ == 0) {

@@ -1,5 +1,5 @@
-// The rest of a film over a scattering pigment without walks: adding and doubling, one Fourier mode of the
-// azimuth at a time. For isotropic films whose facets are met once (solves()).
+// This file computes the rest of a film over a scattering pigment without walks: by adding and doubling, one
+// Fourier mode of the azimuth at a time. It serves isotropic films whose facets are met once (solves()).
 //
 // Directions below the film are Gauss nodes of the cosine m, m_j of weight w_j, M = diag(2 pi w_j m_j). Per
 // wavelength and mode k, with Int g cos(k phi) dphi of what light carries and 1/(2 pi) Int g cos(k phi) dphi
@@ -13,9 +13,10 @@
 // and the base, which forgets directions, sees the mode 0 alone:
 //   base = s kd/pi A(wo) A(wi) / (1 - kd returned),  A(w) = 1 . M T D,
 // returned = the share of what leaves a Lambertian base that comes back to it. The facets' integrals E and F
-// interpolate what they act on between the nodes, so that no lobe is too narrow. Discretisation errors:
-// tests/accuracy/dense/slab_solver_test.cpp. Sources: van de Hulst, Multiple Light Scattering (1980), ch. 4;
-// Jakob et al., A comprehensive framework for rendering layered materials, SIGGRAPH 2014.
+// interpolate what they act on between the nodes, so that no lobe is too narrow.
+// tests/accuracy/dense/slab_solver_test.cpp holds the discretisation errors. Sources: van de Hulst, Multiple
+// Light Scattering (1980), ch. 4; Jakob et al., A comprehensive framework for rendering layered materials,
+// SIGGRAPH 2014.
 #pragma once
 
 #include <map>
@@ -31,56 +32,55 @@
 
 namespace sunbeam {
 
-// 2 n1 d / lambda of each wavelength.
+// Returns 2 n1 d / lambda of each wavelength.
 std::vector<double> fringe_orders(double film_ior, double thickness_nm, const Wavelengths& wavelengths);
 
 class SlabSolver {
  public:
-  // How finely it works.
+  // Says how finely the solver works.
   struct Resolution {
     int below = 12, above = 20;  // cosines up to the critical one of the film seen from below, and from there
     int across = 24, around = 24;  // facets of one direction: over the cap, and over half a turn
     double least = 3e-5;           // share of the phase function that may be left out
-    // Modes of the azimuth in which light scattered once is weaker than this share of its mean, between any
-    // two of the cosines, are left out too.
+    // Modes of the azimuth are left out too if light scattered once is weaker in them than this share of its
+    // mean, between any two of the cosines.
     double faintest = 0;
   };
 
-  // Largest |mean cosine| of a scattering event.
+  // This is the largest |mean cosine| of a scattering event that it solves.
   static constexpr double kMostForward = 0.75;
 
   static bool solves(const Material& material);
 
-  // For this material with any film thickness and any optical depth of `depths` (absorption, at any
-  // wavelength), between directions of these cosines (> 0, outside).
+  // Serves this material with any film thickness and any optical depth that add_depth() has been given,
+  // between directions of these cosines (> 0, outside).
   SlabSolver(const Material& material, std::vector<double> cosines, Resolution resolution);
   SlabSolver(const Material& material, std::vector<double> cosines)
       : SlabSolver(material, std::move(cosines), Resolution()) {}
 
-  // Prepares the pigment at an optical depth of absorption. May be called by many threads, but not beside
-  // rest().
+  // Prepares the pigment at an optical depth of absorption. Many threads may call it, but not beside rest().
   void add_depth(double depth);
 
-  // What a film at one fringe order over a pigment of one depth sends back, 1/sr.
+  // Holds what a film at one fringe order over a pigment of one depth sends back, 1/sr.
   struct Response {
-    // Per mode: light that never reaches the base, between the cosines of wo and wi.
+    // For each mode this is the light that never reaches the base, between the cosines of wo and wi.
     std::vector<Matrix> slab;
     Vector arrived;  // at the base, from each cosine; times the root of s / pi
     double returned = 0;
 
-    // Over a base of this albedo: light that reaches it, whatever the azimuth.
+    // Returns the light that reaches a base of this albedo, whatever the azimuth.
     double base(std::size_t a, std::size_t b, double albedo) const {
       return albedo / (1 - albedo * returned) * arrived[a] * arrived[b];
     }
   };
 
-  // The film at some fringe orders 2 n1 d / lambda, at most kMostWavelengths.
+  // Prepares the film at some fringe orders 2 n1 d / lambda, at most kMostWavelengths.
   class Fringes {
    public:
     Fringes(const SlabSolver& solver, std::span<const double> orders);
 
-    // Of the order of this number. The same bits whatever other orders there are. Throws Error if the depth
-    // has not been added.
+    // Returns the response at the order of this number. It has the same bits whatever other orders there are.
+    // Throws Error if the depth has not been added.
     Response response(std::size_t order, double depth) const;
 
    private:
@@ -94,13 +94,14 @@ class SlabSolver {
     std::vector<std::vector<Mode>> modes_;  // by (order, mode)
   };
 
-  // The film at one thickness and all wavelengths, for many depths.
+  // Prepares the film at one thickness and all wavelengths, for many depths.
   class Film {
    public:
     Film(const SlabSolver& solver, double film_thickness_nm, const Wavelengths& wavelengths);
 
-    // Fourier modes of rest, 1/sr, between cosines a (of wo) and b (of wi): at() sums them. Absorption is
-    // that of the pigment at 510 nm, times its thickness. Throws Error if a depth has not been added.
+    // Holds the Fourier modes of the rest, 1/sr, between cosines a (of wo) and b (of wi); at() sums them. The
+    // optical depth is the pigment's absorption at 510 nm times its thickness. rest() throws Error if a depth
+    // has not been added.
     class Modes {
      public:
       Rgb at(std::size_t a, std::size_t b, double azimuth) const;
@@ -117,14 +118,14 @@ class SlabSolver {
     Fringes fringes_;
   };
 
-  // Share of light along the cosine of this number that films of these fringe orders, at most
+  // Returns the share of light along the cosine of this number that films of these fringe orders, at most
   // kMostWavelengths, let in.
   std::vector<double> transmittances(std::span<const double> orders, std::size_t cosine) const;
 
   int modes() const { return modes_; }
 
  private:
-  // Nodes and weights of the cosine below the film, and what values between them are made of.
+  // Holds nodes and weights of the cosine below the film, and what values between them are made of.
   struct Nodes {
     std::vector<double> cosine, sine, root;  // root of M
     static constexpr int kStencil = 6;
@@ -135,23 +136,23 @@ class SlabSolver {
     int size() const { return static_cast<int>(cosine.size()); }
     Stencil at(double m) const;
   };
-  // A facet that light of one direction meets, and where the light goes on below the film.
+  // Describes a facet that light of one direction meets, and where the light goes on below the film.
   struct Facet {
     double cosine;   // at which the light meets it
     double share;    // of the light, shadowing included
     double azimuth;  // cosine of the azimuth of where it goes on
     int first_node;  // around the cosine of where it goes on
-    // Its part in moments at these nodes, of even and odd modes.
+    // These are its parts in moments at these nodes, of even and odd modes.
     std::array<double, Nodes::kStencil> even, odd;
   };
   using FacetList = std::vector<Facet>;
 
-  // R and T between nodes, times the roots of M on both sides.
+  // Holds R and T between nodes, times the roots of M on both sides.
   struct Layer {
     std::vector<Matrix> reflection;  // per mode
     Matrix transmission;             // mode 0
   };
-  // The phase function's mode between nodes, 1/sr: scattered on, and back.
+  // Holds a mode of the phase function between nodes, 1/sr: scattered on, and back.
   struct Phase {
     Matrix forward, backward;
   };

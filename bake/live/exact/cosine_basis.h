@@ -1,4 +1,5 @@
-// Functions of a cosine mu in [0, 1] by their values at nodes: polynomials on panels, Gauss points of each.
+// This file represents functions of a cosine mu in [0, 1] by their values at nodes. They are polynomials on
+// panels, and the nodes are the Gauss points of each.
 //
 // Panels halve towards mu = 0, where exp(-tau / mu) has its essential singularity, and towards mu = 1, where
 // it peaks when tau is large. With 10 nodes a panel exp(-x / mu) is interpolated to 1e-7 of its maximum for
@@ -30,10 +31,10 @@ class CosineBasis {
   int size() const { return static_cast<int>(nodes_.size()); }
   int per_panel() const { return panel_.size(); }
   const std::vector<double>& nodes() const { return nodes_; }
-  // Int f(mu) 2 pi mu dmu = sum of these times f(node).
+  // Returns the weights of a quadrature: Int f(mu) 2 pi mu dmu = sum of these times f(node).
   const std::vector<double>& cosine_weights() const { return cosine_weights_; }
 
-  // f(mu) = sum_k weight[k] f(node[first + k]), k < per_panel().
+  // Holds the weights of a value: f(mu) = sum_k weight[k] f(node[first + k]), k < per_panel().
   struct Stencil {
     int first;
     GaussInterpolation::Weights weight;

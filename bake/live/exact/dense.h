@@ -1,4 +1,4 @@
-// Small dense matrices, row by row, as the exact evaluator needs them (about 100 x 100).
+// This file holds small dense matrices, row by row, as the exact evaluator needs them (about 100 x 100).
 //
 // Products run along rows, so that compilers vectorise them without reordering a sum.
 #pragma once
@@ -29,7 +29,7 @@ class Matrix {
   Vector values_;
 };
 
-// y += factor * x over `count` numbers.
+// Does y += factor * x over `count` numbers.
 inline void add_scaled(double factor, const double* x, int count, double* y) {
   for (int k = 0; k < count; ++k) y[k] += factor * x[k];
 }
@@ -40,7 +40,7 @@ inline double dot(const Vector& a, const Vector& b) {
   return sum;
 }
 
-// x^T a; for a symmetric matrix also a x.
+// Returns x^T a; for a symmetric matrix it is also a x.
 inline Vector multiply(const Vector& x, const Matrix& a) {
   Vector y(a.columns());
   for (int i = 0; i < a.size(); ++i)
@@ -65,7 +65,7 @@ inline Matrix multiply(const Matrix& a, const Matrix& b) {
   return c;
 }
 
-// 1 - a.
+// Returns 1 - a.
 inline Matrix one_minus(Matrix a) {
   for (int i = 0; i < a.size(); ++i) {
     for (int j = 0; j < a.size(); ++j) a.row(i)[j] = -a.row(i)[j];
@@ -81,13 +81,13 @@ inline Matrix transposed(const Matrix& a) {
   return t;
 }
 
-// (a + a^T) / 2.
+// Replaces a by (a + a^T) / 2.
 inline void symmetrise(Matrix& a) {
   for (int i = 0; i < a.size(); ++i)
     for (int k = 0; k < i; ++k) a.row(i)[k] = a.row(k)[i] = (a.row(i)[k] + a.row(k)[i]) / 2;
 }
 
-// x with a x = b: Gauss elimination with row pivoting.
+// Returns x with a x = b by Gauss elimination with row pivoting.
 inline Matrix solve(Matrix a, Matrix b) {
   const int n = a.size(), columns = b.columns();
   for (int k = 0; k < n; ++k) {

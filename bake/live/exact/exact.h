@@ -1,4 +1,5 @@
-// The live model without noise: the rest of the BSDF and the albedo by quadrature, for 1 to kMostWavelengths.
+// This file evaluates the live model without noise: the rest of the BSDF and the albedo by quadrature, for 1
+// to kMostWavelengths.
 //
 // The base has no azimuth, so g, the light that leaves the base along mu_o for one unit of power arriving at
 // mu_i, depends on two cosines below the film and obeys
@@ -26,17 +27,17 @@
 
 namespace sunbeam {
 
-// The equations above for three wavelengths side by side, one value each. What ExactRest is made of.
+// Solves the equations above for three wavelengths side by side, one value each. ExactRest is made of it.
 class ExactTriple {
  public:
   // `albedo` of the base and `absorption` relative to the material's stand in for the material's own.
   ExactTriple(const Material& material, const Rgb& wavelengths_nm, const Rgb& albedo, const Rgb& absorption,
               const ExactResolution& resolution);
 
-  // Ways to the base, the same for all triples of no shorter wavelengths.
+  // Returns the ways to the base, which are the same for all triples of no shorter wavelengths.
   std::vector<CrossingNode> crossings(const Vec3& w) const { return film_.crossings(w); }
 
-  // What rest() needs of a direction with w.z > 0, and what takes the time.
+  // Holds what rest() needs of a direction with w.z > 0. Making it is what takes the time.
   struct Side {
     Rgb power;                       // A; product without bending at facets: what passes,
     std::array<Vector, 3> on_nodes;  // v / kd there,
@@ -47,7 +48,7 @@ class ExactTriple {
   Rgb first_albedo(const Vec3& w) const { return film_.first_albedo(w); }
   Rgb rest_albedo(const std::vector<CrossingNode>& crossings) const;
 
-  // Path "sum" alone: rest = gain() A(wo) A(wi) with A = arriving().
+  // Path "sum" alone has these: rest = gain() A(wo) A(wi) with A = arriving().
   Rgb arriving(const std::vector<CrossingNode>& crossings) const;
   Rgb gain() const { return gain_ * material_.radiance_scale(); }
 
@@ -73,27 +74,30 @@ class ExactTriple {
 
 class ExactRest {
  public:
-  // No scattering, facets met once.
+  // Says whether the material is without scattering and its facets are met once.
   static bool is_valid_for(const Material& material) {
     return !material.scatters() && !material.has_multiple_facets();
   }
 
-  // Of `material` the albedo gives way to that of the wavelengths, and its absorption is scaled by theirs.
+  // Prepares the rest of a material. Its albedo gives way to that of the wavelengths, and its absorption is
+  // scaled by theirs.
   ExactRest(const Material& material, const Wavelengths& wavelengths, const ExactResolution& resolution = {});
 
   const Wavelengths& wavelengths() const { return wavelengths_; }
 
-  // Everything but the first surface, 1/sr, folded to linear RGB; 0 below the horizon. Symmetric.
+  // Returns everything but the first surface, 1/sr, folded to linear RGB; 0 below the horizon. It is
+  // symmetric.
   Rgb rest(const Vec3& wo, const Vec3& wi) const { return rest(std::span(&wo, 1), wi).front(); }
-  // For many wo at half the price.
+  // Does the same for many wo at half the price.
   std::vector<Rgb> rest(std::span<const Vec3> wo, const Vec3& wi) const;
 
-  // Directional-hemispherical reflectance, folded: first surface (a smooth film's Dirac included) and rest.
+  // Returns the directional-hemispherical reflectance, folded: of first surface (a smooth film's Dirac
+  // included) and rest.
   Rgb albedo(const Vec3& w) const;
   Rgb rest_albedo(const Vec3& w) const;
 
-  // Path "sum" alone, a value for each wavelength: rest = fold(gain_k A_k(wo) A_k(wi)), A = arriving(w), the
-  // share of the power along w that reaches the base. w.z > 0.
+  // Path "sum" alone has these, a value for each wavelength: rest = fold(gain_k A_k(wo) A_k(wi)). A =
+  // arriving(w) is the share of the power along w that reaches the base; w.z > 0.
   std::vector<double> arriving(const Vec3& w) const;
   std::vector<double> gain() const;
 

@@ -1,4 +1,5 @@
-// The live model as a deterministic BSDF at the price of a table look-up, for absorption_path "sum".
+// This file makes the live model a deterministic BSDF at the price of a table look-up, for absorption_path
+// "sum".
 //
 // There the rest is exactly of rank one at each wavelength (exact.h),
 //     rest(wo, wi) = fold(gain_k A_k(wo) A_k(wi)),
@@ -28,7 +29,7 @@ class ExactBsdf final : public Bsdf {
  public:
   // A rough film's A_k is dear, and oscillates with the thickness.
   static constexpr double kThickestRoughNm = 5000;
-  // A plain material with path "sum", and a film that is smooth or no thicker than that.
+  // Says whether the material is plain with path "sum" and its film smooth or no thicker than that.
   static bool is_valid_for(const Material& material) {
     return material.is_plain() && material.absorption_path == AbsorptionPath::sum &&
            (material.is_smooth() || material.film_thickness_nm <= kThickestRoughNm);
@@ -43,10 +44,10 @@ class ExactBsdf final : public Bsdf {
   double mis_pdf(const Vec3& wo, const Vec3& wi) const override;
   bool is_isotropic() const override { return true; }
 
-  // 1/sr; 0 for a smooth film.
+  // Returns the first surface's part, 1/sr; 0 for a smooth film.
   Rgb first(const Vec3& wo, const Vec3& wi) const;
   Rgb rest(const Vec3& wo, const Vec3& wi) const;
-  // Weight of the mirror direction; 0 for a rough film.
+  // Returns the weight of the mirror direction; 0 for a rough film.
   Rgb dirac(const Vec3& wo) const { return smooth_ && wo.z > 0 ? reflectance(wo.z) : Rgb(); }
 
  private:

@@ -1,4 +1,4 @@
-// The film as integrals over its facets, by quadrature: what walks draw at random, summed up.
+// This file describes the film by integrals over its facets: quadrature sums up what walks draw at random.
 //
 // Over a base without azimuth light below the film is known by its polar cosine alone: an anisotropic film
 // acts on it by the mean over the azimuth of what comes from below, which is that over all turns of its
@@ -17,7 +17,7 @@
 
 namespace sunbeam {
 
-// Numbers of nodes. The defaults give the errors that docs/theory/live.md states; tests double them.
+// Holds numbers of nodes. The defaults give the errors that docs/theory/live.md states; tests double them.
 struct ExactResolution {
   int per_panel = 10;  // of a panel of the cosine basis, at most 24
   int normals = 24;    // facets: polar angle of the normal,
@@ -26,7 +26,7 @@ struct ExactResolution {
   int visible = 28;    // normals visible from one direction: polar, and 3/4 of it a panel of azimuths
 };
 
-// A way through the film to the base, whatever the wavelength.
+// Describes a way through the film to the base, whatever the wavelength.
 struct CrossingNode {
   double facet_cosine;  // outside
   double cosine;        // below, as the light arrives at the base
@@ -41,30 +41,31 @@ class FilmIntegrals {
   // False if facets bend light, so that crossings() is a quadrature over many cosines.
   bool has_single_crossing() const { return !geometry_.has_glossy_crossing(); }
 
-  // Ways of light along w, for all wavelengths not shorter than those of this object; none under total
-  // reflection. p_t(w -> m) dm is share times transmittance() at m.z = cosine.
+  // Returns the ways of light along w, for all wavelengths not shorter than those of this object; there are
+  // none under total reflection. p_t(w -> m) dm is share times transmittance() at m.z = cosine.
   std::vector<CrossingNode> crossings(const Vec3& w) const;
   Rgb transmittance(const CrossingNode& crossing) const { return power(crossing.facet_cosine).transmittance; }
 
-  // Directional albedo of the first surface, a smooth film's Dirac included.
+  // Returns the directional albedo of the first surface, a smooth film's Dirac included.
   Rgb first_albedo(const Vec3& w) const;
 
-  // B, symmetric: f^T B g = Int Int f(m.z) m.z f_below(m, m') m'.z g(m'.z) dm dm', one matrix a wavelength.
+  // Returns B, one symmetric matrix a wavelength: f^T B g = Int Int f(m.z) m.z f_below(m, m') m'.z g(m'.z) dm
+  // dm'.
   std::array<Matrix, 3> reflection() const;
 
-  // t^T f = Int (n0/n2)^2 w.z p_t(w -> m) f(m.z) dm dw: power that leaves the film altogether when the base
-  // sends the radiance f up.
+  // Returns t with t^T f = Int (n0/n2)^2 w.z p_t(w -> m) f(m.z) dm dw, the power that leaves the film
+  // altogether when the base sends the radiance f up.
   std::array<Vector, 3> exit(const std::array<Matrix, 3>& reflection) const;
 
  private:
-  // One direction a side of a facet: both cosines with the macro normal.
+  // Holds one direction on each side of an event at a facet: the cosines of both with the macro normal.
   struct Meeting {
     double cosine, partner;
     Rgb weight;
   };
   enum class Event { reflection_below, crossing };
 
-  // From outside.
+  // Returns the film's powers for light from outside.
   FilmPower power(double facet_cosine) const { return airy(film_, facet_cosine, wavelengths_nm_); }
   const ThinFilm& film_of(Event event) const { return event == Event::crossing ? film_ : film_below_; }
   double phase(const ThinFilm& film, double cosine) const;

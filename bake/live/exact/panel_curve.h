@@ -1,5 +1,5 @@
-// Several functions of x in [0, 1] at once, as polynomials on panels that they share: dear to make, cheap to
-// evaluate.
+// This file holds several functions of x in [0, 1] at once, as polynomials on panels that they share. They
+// are dear to make and cheap to evaluate.
 //
 // A panel is halved until the last two coefficients of every function's Chebyshev series are small; where the
 // series converges geometrically, as it does for analytic functions, its error is smaller still.
@@ -13,7 +13,8 @@
 
 namespace sunbeam {
 
-// Of degree 7 by Estrin's scheme: short chains of operations. The coefficients are `stride` apart.
+// Evaluates a polynomial of degree 7 by Estrin's scheme, which keeps chains of operations short. The
+// coefficients are `stride` apart.
 inline double panel_polynomial(const double* c, std::size_t stride, double s) {
   const double s2 = s * s, s4 = s2 * s2;
   return ((c[0] + s * c[stride]) + s2 * (c[2 * stride] + s * c[3 * stride])) +
@@ -22,8 +23,8 @@ inline double panel_polynomial(const double* c, std::size_t stride, double s) {
 
 class PanelCurve {
  public:
-  // The two last coefficients together: at most relative * (least magnitude at the panel's nodes) + absolute.
-  // Panels not wider than `narrowest` are taken as they are.
+  // Bounds the two last coefficients together: they are at most relative * (least magnitude at the panel's
+  // nodes) + absolute. Panels not wider than `narrowest` are taken as they are.
   struct Accuracy {
     double relative, absolute, narrowest;
   };
@@ -37,10 +38,10 @@ class PanelCurve {
   std::size_t count() const { return count_; }
   std::size_t panels() const { return panels_.size(); }
 
-  // Numbers that at() writes: count(), filled up to a multiple of four unless it is 1.
+  // Returns how many numbers at() writes: count(), filled up to a multiple of four unless it is 1.
   std::size_t lanes() const { return lanes_; }
 
-  // All values at x, which is clamped to [0, 1].
+  // Writes all values at x, which is clamped to [0, 1].
   void at(double x, double* values) const {
     x = std::clamp(x, 0.0, 1.0);
     std::size_t p = first_panel_[static_cast<std::size_t>(x * kBins)];

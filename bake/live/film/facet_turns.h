@@ -1,5 +1,6 @@
-// GGX facets (sunbeam/detail/ggx.h) in means over all turns of a facet about the macro normal, directions
-// turned along with it: all that a film is to light whose azimuth nobody knows.
+// This file takes means of GGX facets (sunbeam/detail/ggx.h) over all turns of a facet about the macro
+// normal, with directions turned along with it. They are all that a film is to light whose azimuth nobody
+// knows.
 #pragma once
 
 #include <vector>
@@ -15,12 +16,13 @@ class FacetTurns {
     for (int k = 0; k < count; ++k) azimuths_.push_back(kPi * k / count);
   }
 
-  // One azimuth of a facet's normal: of twice the angle, and D(h) over their number.
+  // Describes one azimuth of a facet's normal by cosine and sine of twice the angle, and by D(h) over the
+  // number of azimuths.
   struct Turn {
     double cos_twice, sin_twice, density;
   };
 
-  // Of facets tilted by `theta`.
+  // Returns the turns of facets tilted by `theta`.
   std::vector<Turn> at(double theta) const {
     std::vector<Turn> turns;
     for (const double azimuth : azimuths_)
@@ -29,7 +31,8 @@ class FacetTurns {
     return turns;
   }
 
-  // D(h) and the height-correlated masking of a direction and its partner, if that is masked at all.
+  // Returns the mean of D(h) times the height-correlated masking of a direction and its partner, if that is
+  // masked at all.
   double masked(const std::vector<Turn>& turns, const Vec3& w, const Vec3* partner) const {
     const Lambda here(roughness_, w), there(roughness_, partner ? *partner : w);
     double sum = 0;
@@ -38,15 +41,16 @@ class FacetTurns {
   }
 
  private:
-  // How many even azimuths average functions of GGX's slopes, whose Fourier modes shrink by
-  // (v - u) / (v + u).
+  // Returns how many even azimuths average functions of GGX's slopes, whose Fourier modes shrink by (v - u) /
+  // (v + u).
   static int count_of(const Roughness& roughness) {
     constexpr double kError = 1e-8;  // share of the anisotropy that is left out
     const double shrink = std::abs(roughness.u - roughness.v) / (roughness.u + roughness.v);
     return shrink == 0 ? 1 : 2 + static_cast<int>(std::log(kError) / std::log(shrink));
   }
 
-  // Of a direction turned to azimuths about the macro normal along with the facet it meets:
+  // Evaluates Smith's Lambda of a direction turned to azimuths about the macro normal along with the facet it
+  // meets:
   //   2 tan^2 (u^2 cos^2 + v^2 sin^2) = tan^2 (u^2 + v^2) + (u^2 - v^2) (tan^2 cos(2 phi)).
   struct Lambda {
     double even, cosine, sine;

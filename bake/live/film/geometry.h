@@ -1,5 +1,5 @@
-// Where a facet of the film sends light and how much of it the other facets let by: all of the film but its
-// reflectance.
+// This file says where a facet of the film sends light and how much of it the other facets let by. It is all
+// of the film but its reflectance.
 //
 // Directions: outside directions `w` and inside directions `m` are unit vectors with z > 0; w points away
 // from the surface, m away from the base. Light that enters along w reaches the base along m; light that
@@ -15,7 +15,7 @@
 
 namespace sunbeam {
 
-// Where light goes on, and the share of it that masking facets leave.
+// Says where light goes on, and which share of it masking facets leave.
 struct Onward {
   Vec3 direction;
   double share;
@@ -26,23 +26,24 @@ class FilmGeometry {
   explicit FilmGeometry(const Material& material);
 
   bool is_smooth() const { return !rough_; }
-  // True if facets bend what crosses, so that leaving along a given w has a density over m.
+  // Says whether facets bend what crosses, so that leaving along a given w has a density over m.
   bool has_glossy_crossing() const { return rough_ && bends_; }
   bool bends() const { return bends_; }
   double index_ratio() const { return index_ratio_; }
   const Ggx& ggx() const { return ggx_; }
 
-  // A facet that light along w meets, its normal's density D_vis(h; w); the macro normal of a smooth film.
+  // Returns the normal of a facet that light along w meets, drawn with density D_vis(h; w); for a smooth film
+  // it is the macro normal.
   Vec3 visible_normal(const Vec3& w, const Point2& u) const {
     return rough_ ? ggx_.sample_visible(w, u) : Vec3{0, 0, 1};
   }
 
-  // Light along w crosses the facet of normal h to the inside, or light along m to the outside.
+  // These let light along w cross the facet of normal h to the inside, or light along m to the outside.
   std::optional<Onward> cross(const Vec3& w, const Vec3& h) const { return cross(w, h, index_ratio_); }
   std::optional<Onward> leave(const Vec3& m, const Vec3& h) const { return cross(m, h, 1 / index_ratio_); }
 
-  // The facet of normal h mirrors light along w to its own side. Light thrown down arrives from m mirrored at
-  // the facet turned half round, and that turn leaves the distribution of normals as it is.
+  // Lets the facet of normal h mirror light along w to its own side. Light thrown down arrives from m
+  // mirrored at the facet turned half round, and that turn leaves the distribution of normals as it is.
   std::optional<Onward> mirror(const Vec3& w, const Vec3& h) const;
 
  private:

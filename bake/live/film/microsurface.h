@@ -1,5 +1,5 @@
-// GGX facets (sunbeam/detail/ggx.h) as a medium that light wanders in: Smith's microsurface after Heitz et
-// al. 2016, position-free as in Bitterli and d'Eon 2022.
+// This file treats GGX facets (sunbeam/detail/ggx.h) as a medium that light wanders in. It is Smith's
+// microsurface after Heitz et al. 2016, position-free as in Bitterli and d'Eon 2022.
 //
 // Of the height only C, the share of the microsurface below it, matters. With depth = -ln C (0 above
 // everything) a microsurface is a homogeneous half-space: light travelling along x meets facets at
@@ -20,7 +20,8 @@ namespace sunbeam::walk {
 enum class Side { outside, inside };
 constexpr Side opposite(Side side) { return side == Side::outside ? Side::inside : Side::outside; }
 
-// Light between two facets, or about to meet one at this depth; directions in the frame of the side.
+// Says where light is: between two facets, or about to meet one at this depth. Directions are in the frame of
+// the side.
 struct Place {
   Side side;
   Vec3 travel;
@@ -32,8 +33,8 @@ struct Place {
 
 inline double depth_from_other_side(double depth) { return -std::log(-std::expm1(-std::max(depth, 1e-300))); }
 
-// The counterpart of `w` beyond a facet, on the same side of its normal `h` as w; ratio = index of w's medium
-// over the other's. False under total reflection.
+// Finds the counterpart of `w` beyond a facet, on the same side of its normal `h` as w; ratio = index of w's
+// medium over the other's. Returns false under total reflection.
 inline bool refract(const Vec3& w, const Vec3& h, double ratio, Vec3& beyond) {
   const double cosine = dot(w, h);
   const double beyond2 = 1 - square(ratio) * (1 - square(cosine));
@@ -56,23 +57,24 @@ class Microsurface {
   }
   double rate(const Vec3& x) const { return area(x) / std::max(std::abs(x.z), 1e-12); }
 
-  // The chance to leave from here without meeting another facet.
+  // Returns the chance to leave from here without meeting another facet.
   double escape_chance(const Place& at) const {
     return at.leads_away() ? std::exp(-rate(at.travel) * at.depth) : 0;
   }
 
-  // A facet that light travelling along x meets.
+  // Draws the normal of a facet that light travelling along x meets.
   Vec3 sample_facet(const Vec3& x, Rng& rng) const {
     return ggx_.sample_visible(-x, {rng.uniform(), rng.uniform()});
   }
 
-  // On to the next facet, which is certain on the way down. False if light on its way up escapes.
+  // Flies on to the next facet, which is certain on the way down. Returns false if light on its way up
+  // escapes.
   bool fly(Place& at, Rng& rng) const {
     const double step = -std::log(1 - rng.uniform()) / rate(at.travel);
     at.depth += at.leads_away() ? -step : step;
     return at.depth > 0;
   }
-  // The same for light that must not escape: the caller has weighed it with 1 - escape_chance.
+  // Does the same for light that must not escape: the caller has weighed it with 1 - escape_chance.
   void fly_back(Place& at, Rng& rng) const {
     if (!at.leads_away()) {
       fly(at, rng);
@@ -83,17 +85,17 @@ class Microsurface {
     at.depth = std::max(0.0, at.depth - step);
   }
 
-  // Light that comes to the surface from afar.
+  // Returns the place where light that comes to the surface from afar meets its first facet.
   Place first_facet(Side side, const Vec3& travel, Rng& rng) const {
     Place at{side, travel, 0};
     fly(at, rng);
     return at;
   }
 
-  // Density over y, 1/sr, of being mirrored from x by a facet; `h` is its normal.
+  // Returns the density over the new direction, 1/sr, of being mirrored from x by a facet; `h` is its normal.
   double mirror_density(const Vec3& x, const Vec3& h) const { return ggx_.d(h) / (4 * area(x)); }
 
-  // Density over `beyond` (as refract() has it), 1/sr, of passing a facet of normal `h` from x.
+  // Returns the density over `beyond` (as refract() has it), 1/sr, of passing a facet of normal `h` from x.
   double passing_density(const Vec3& x, const Vec3& h, const Vec3& beyond, double ratio) const {
     const double near = -dot(x, h), far = dot(beyond, h);
     return ggx_.d(h) * near * far / (area(x) * square(far - ratio * near));

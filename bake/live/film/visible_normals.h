@@ -1,5 +1,5 @@
-// The GGX normals (sunbeam/detail/ggx.h) visible from one direction, in coordinates for a quadrature: what
-// light does there changes smoothly between the edges that are given.
+// This file gives the GGX normals (sunbeam/detail/ggx.h) visible from one direction in coordinates for a
+// quadrature. What light does there changes smoothly between the edges that are given.
 //
 // The normals visible from w, by stretching the surface to roughness 1, where their density over half the
 // angle between w and its mirror image is uniform (Heitz 2018): polar angle about the stretched w, azimuth
@@ -22,7 +22,8 @@
 
 namespace sunbeam {
 
-// Cosine of total reflection; 0 if there is none. Of a film, that at its base, as seen from its exterior.
+// Returns the cosine of total reflection; 0 if there is none. For a film it is that at its base, as seen from
+// its exterior.
 inline double critical_cosine(double ior_from, double ior_to) {
   return std::sqrt(std::max(0.0, 1 - square(ior_to / ior_from)));
 }
@@ -40,28 +41,31 @@ class VisibleNormals {
     return normalize({k.x, k.y, std::max(0.0, k.z)});
   }
 
-  // Over polar angle and azimuth, between the first and the last of azimuth_edges().
+  // Returns the density over polar angle and azimuth, between the first and the last of azimuth_edges().
   double density(double polar) const {
     return (is_halved() ? 2 : 1) * std::sin(2 * polar) / (kPi * (1 + axis_.z));
   }
 
-  // Azimuths between which the bounds of polar_edges() are smooth: the horizon is met between -pi / 2 and
-  // pi / 2; a conic is touched by two, and two go through where it leaves the horizon or its arc ends.
+  // Returns the azimuths between which the bounds of polar_edges() are smooth: the horizon is met between -pi
+  // / 2 and pi / 2; a conic is touched by two, and two go through where it leaves the horizon or its arc
+  // ends.
   std::vector<double> azimuth_edges() const;
 
-  // 0, where the conics begin and end, the horizon; ascending.
+  // Returns 0, where the conics begin and end, and the horizon; ascending.
   std::array<double, 8> polar_edges(double azimuth) const;
 
-  // Up to where w is mirrored above the horizon: a convex set of normals, which holds the axis and no rim.
+  // Returns the polar angle, at most `end`, up to which w is mirrored above the horizon. Such normals are a
+  // convex set, which holds the axis and no rim.
   double mirrored_end(double azimuth, double end) const;
 
  private:
-  // A cone of normals k: where the symmetric bilinear form of k with itself vanishes.
+  // Describes a cone of normals k: there the symmetric bilinear form of k with itself vanishes.
   struct Conic {
     Vec3 w;
     double cone, ratio;  // one of them is 0
 
-    // w.k = cone |k|, or |(k.x, k.y) w.z - k.z (w.x, w.y)| = k.z / ratio.
+    // Evaluates the form, which is 0 for w.k = cone |k|, or for |(k.x, k.y) w.z - k.z (w.x, w.y)| = k.z /
+    // ratio.
     double operator()(const Vec3& a, const Vec3& b) const {
       if (cone > 0) return dot(a, b) - dot(w, a) * dot(w, b) / square(cone);
       const auto x = [&](const Vec3& k) { return k.x * w.z - k.z * w.x; };
@@ -69,7 +73,7 @@ class VisibleNormals {
       return x(a) * x(b) + y(a) * y(b) - a.z * b.z / square(ratio);
     }
   };
-  // c + 2 b t + a t^2, t = tan(polar).
+  // Stands for c + 2 b t + a t^2, t = tan(polar).
   struct Quadratic {
     double c, b, a;
   };

@@ -1,6 +1,7 @@
-// Importance of directions that leave the base, as a density over t = cos^2, where cos-weighted is uniform.
+// This file guides walks by the importance of directions that leave the base. It is a density over t = cos^2,
+// where cos-weighted is uniform.
 //
-// Bins of equal probability: a sample is one look-up, and stays stratified when its uniform number is.
+// Bins have equal probability, so a sample is one look-up, and stays stratified when its uniform number is.
 #pragma once
 
 #include <array>
@@ -14,7 +15,7 @@ class BaseGuide {
   static constexpr int kBins = 64;
   static constexpr double kCosineShare = 0.1;
 
-  // From the importance at the midpoints of equal bins of t, none negative. A share of the samples stays
+  // Takes the importance at the midpoints of equal bins of t, none negative. A share of the samples stays
   // cos-weighted, which bounds 1 / density.
   explicit BaseGuide(const std::array<double, kBins>& importance);
 
@@ -26,7 +27,7 @@ class BaseGuide {
   template <class V>
   SUNBEAM_INLINE Sample<V> sample(const V& u) const;
 
-  // Density over t.
+  // Returns the density over t.
   double density(double square) const;
 
  private:
@@ -55,7 +56,8 @@ SUNBEAM_INLINE BaseGuide::Sample<V> BaseGuide::sample(const V& u) const {
 
 struct Layers;
 
-// What a few walks between film and base tell about them; its noise is harmless, for it only steers choices.
+// Holds what a few walks between film and base tell about them. Its noise is harmless, for it only steers
+// choices.
 struct BaseForecast {
   BaseGuide going_on;  // for walks that go on: towards what the film throws back and the pigment lets through
   BaseGuide leaving;   // for walks that may leave: towards what gets out, now or later

@@ -1,5 +1,6 @@
-// The bidirectional estimator of the rest (Guo, Hasan, Zhao 2018, Sec. 5), for a packet of walks at once. It
-// is the cross-check of the unidirectional one, which is the faster of the two for these materials.
+// This file holds the bidirectional estimator of the rest (Guo, Hasan, Zhao 2018, Sec. 5), for a packet of
+// walks at once. It is the cross-check of the unidirectional one, which is the faster of the two for these
+// materials.
 //
 // A walk from wo, the camera's, is kept for its first kCameraVisits visits of the base; one from wi, the
 // light's, goes on until roulette ends it, and each of its vertices connects to all of the camera's:
@@ -52,14 +53,14 @@ class BidirectionalWalk {
     Spectrum<V> power;  // after leaving the base
     V up_sum;           // of U's kind
   };
-  // Over shifts towards the light, by the visits the camera has left.
+  // Holds the sums over shifts towards the light, by the visits that the camera has left.
   using Sums = std::array<V, kCameraVisits + 1>;
 
   SUNBEAM_INLINE static V base_density(const V& cosine) {
     return V(BaseGuide::kCosineShare * kInvPi) * cosine;
   }
 
-  // One step of the recursions: U from X over the base, X from U over the film.
+  // These make one step of the recursions: U from X over the base, X from U over the film.
   SUNBEAM_INLINE static V sum_after_base(const V& arrived, const V& down_sum, const V& up) {
     return (V(1) + base_density(arrived) * down_sum) / base_density(up);
   }
@@ -135,7 +136,7 @@ class BidirectionalWalk {
         lobe.film, [&](int j, const V& r) { estimate[j] += power[j] * camera.power[j] * r * factor; });
   }
 
-  // Out along w; `sum` over shifts away from w. The lobe holds the radiance scale.
+  // Lets light out along w; `sum` is over shifts away from w. The lobe holds the radiance scale.
   SUNBEAM_INLINE void leave(const V& up, const Spectrum<V>& power, double w, const V& sum, Rng& rng,
                             Spectrum<V>& estimate) const {
     const auto lobe = steps_.events().cross_towards(up, V(w), rng);

@@ -1,5 +1,6 @@
-// The base part of the rest with multiple facets, for a packet of walks at once: isotropic facets, clear
-// pigment (templates; see general_walk.h for the parts, microsurface.h for the facets).
+// This file estimates the base part of the rest with multiple facets, for a packet of walks at once. It
+// serves isotropic facets and clear pigment (templates; see general_walk.h for the parts, microsurface.h for
+// the facets).
 //
 // The base forgets azimuth and every event at a facet looks at signed polar cosines alone, so a walk is a
 // cosine and a height. Lanes need different numbers of facets between two visits of the base: every round is
@@ -44,13 +45,14 @@ class FacetsWalk {
 
  private:
   // Roulette starts when less than this is still to come: for walks over the base as a share of all that
-  // comes after the first visit, for single crossings as a share of what enters. Where a forecast stands in
-  // for what ends, and where none does.
+  // comes after the first visit, for single crossings as a share of what enters. The first pair holds where a
+  // forecast stands in for what ends, the second where none does.
   static constexpr double kForecastWalkEnd = 0.5, kForecastCrossingEnd = 0.8;
   static constexpr double kWalkEnd = 0.2, kCrossingEnd = 0.05;
   static constexpr double kNothing = 0.02;  // of what enters
 
-  // Between two facets or about to meet one, in the frame of a side: cosines > 0 lead away from the facets.
+  // Describes light between two facets or about to meet one, in the frame of a side: cosines > 0 lead away
+  // from the facets.
   struct Flight {
     V is_outside;  // 1 or 0
     V travel;      // cosine
@@ -59,13 +61,14 @@ class FacetsWalk {
     V total;  // of power
   };
 
-  // What a facet has done.
+  // Says what a facet has done.
   struct Outcome {
     V comes_out;  // below: 1 or 0
     V share;      // uniform in (0, 1]: of the chance to fly at least as far as now
   };
 
-  // With "sum" f1 is a product: all lanes of the walk, at all their visits, connect to all lanes of an exit.
+  // Adds the estimate with "sum", where f1 is a product: all lanes of the walk, at all their visits, connect
+  // to all lanes of an exit.
   SUNBEAM_INLINE void add_sum(double wi, const double* wo, int exits, Rng& rng, double* sums) const {
     Spectrum<V> arrived;
     for (int j = 0; j < layers_.count; ++j) arrived[j] = V(0);
@@ -85,7 +88,7 @@ class FacetsWalk {
     }
   }
 
-  // With "product" each lane connects to its own.
+  // Adds the estimate with "product", where each lane connects to its own.
   SUNBEAM_INLINE void add_product(double wi, const double* wo, int exits, Rng& rng, double* sums) const {
     Arrival<V> exit[kMostExits];
     Spectrum<V> sum[kMostExits];
@@ -153,7 +156,8 @@ class FacetsWalk {
     }
   }
 
-  // What the base's kd / pi and the crossing from outside along wo make of light, the mean over all lanes.
+  // Writes what the base's kd / pi and the crossing from outside along wo make of light, as the mean over all
+  // lanes.
   SUNBEAM_INLINE void leave(double wo, Rng& rng, std::array<double, kMostWavelengths>& mean) const {
     Arrival<V> exit;
     std::array<double, kMostWavelengths> ended{};
@@ -166,7 +170,7 @@ class FacetsWalk {
                 ended[j] * attenuation[j] * layers_.albedo[j] * kInvPi * layers_.radiance_scale;
   }
 
-  // Forecast of what the pigment lets through on the way between film and base; w outside.
+  // Forecasts what the pigment lets through on the way between film and base; w is outside.
   SUNBEAM_INLINE std::array<double, kMostWavelengths> passing(double w) const {
     const double below = 1 - squared(layers_.index_ratio) * (1 - squared(w));
     const double path = 1 / sqrt(max(below, 0.01));
@@ -176,7 +180,7 @@ class FacetsWalk {
     return share;
   }
 
-  // From the base's kd / pi on.
+  // Prepares the way out along wo, from the base's kd / pi on.
   template <class Forecast>
   SUNBEAM_INLINE void prepare_exit(double wo, double end, Rng& rng, Arrival<V>& exit,
                                    Forecast forecast) const {
@@ -187,7 +191,7 @@ class FacetsWalk {
       exit.throughput[j] *= V(layers_.albedo[j] * kInvPi * layers_.radiance_scale);
   }
 
-  // From the base to the film and back.
+  // Takes light from the base to the film and back.
   SUNBEAM_INLINE void come_back(Rng& rng, Arrival<V>& arrival) const {
     const auto up = events_.leave_base(layers_.guide, rng);
     Flight light;
@@ -200,8 +204,8 @@ class FacetsWalk {
     come_out(1, kCrossingEnd, light, arrival, rng, [](const Flight&, double) {});
   }
 
-  // From facet to facet until every lane has come out below or roulette has ended the others; forecast(light,
-  // ended) as above.
+  // Goes from facet to facet until every lane has come out below or roulette has ended the others;
+  // forecast(light, ended) is called as above.
   template <class Forecast>
   SUNBEAM_INLINE void come_out(double unbent, double end, Flight& light, Arrival<V>& arrival, Rng& rng,
                                Forecast forecast) const {
@@ -227,13 +231,13 @@ class FacetsWalk {
     if (!layers_.product) events_.attenuate(V(1) / arrival.cosine, arrival.throughput);
   }
 
-  // Keeps what is left at `end` by ending packets below it: the factor to go on with, or 0.
+  // Keeps what is left at `end` by ending packets below it. Returns the factor to go on with, or 0.
   SUNBEAM_INLINE static double go_on(double left, double end, Rng& rng) {
     if (left >= end && left > 0) return 1;
     return rng.uniform() * end < left ? end / left : 0;
   }
 
-  // From outside to the first facet.
+  // Takes light from outside to the first facet.
   SUNBEAM_INLINE void start(double w, Flight& light, Rng& rng) const {
     light.is_outside = V(1);
     light.travel = V(-w);
@@ -243,28 +247,29 @@ class FacetsWalk {
     fly(V(1) - Uniform<V>::draw(rng), light);
   }
 
-  // On to the next facet, which only `share` of all light gets at least as far to.
+  // Flies on to the next facet, so far that only `share` of all light gets there.
   SUNBEAM_INLINE void fly(const V& share, Flight& light) const {
     light.height = min(light.height - log_of_share(share) * light.travel / facets_.area(light.travel), V(0));
   }
 
-  // Mean number of facets on the way out, for lanes that lead away from the facets.
+  // Returns the mean number of facets on the way out, for lanes that lead away from the facets.
   SUNBEAM_INLINE V facets_ahead(const V& travel, const V& height) const {
     return -height * facets_.area(travel) / max(travel, V(1e-12));
   }
 
-  // Where light can go on from a facet, mirrored or passing, and the power of either.
+  // Says where light can go on from a facet, mirrored or passing, and the power of either.
   struct Ways {
     V mirrored, passed, passed_height;  // travel, and height where it changes
     V mirrors, passes;
   };
-  // The way that was taken: 1 or 0, the power before and after the choice, both times the same factor.
+  // Describes the way that was taken: 1 or 0, and the power before and after the choice, both times the same
+  // factor.
   struct Turn {
     V is_mirrored, goes_out;
     V whole, chosen;
   };
 
-  // One facet, from where a straight crossing leads to the cosine `unbent` below.
+  // Lets light meet one facet, from where a straight crossing leads to the cosine `unbent` below.
   SUNBEAM_INLINE Outcome meet(double unbent, Flight& light, Rng& rng) const {
     const V one(1), half(0.5), zero(0);
     Spectrum<V> r;
@@ -310,7 +315,8 @@ class FacetsWalk {
     return ways;
   }
 
-  // To the outside or the inside? By power, and outside about by the chance x / (1 + x) to stay there.
+  // Chooses between outside and inside: by power, and for the outside about by the chance x / (1 + x) to stay
+  // there.
   SUNBEAM_INLINE Turn take_turn(const Ways& ways, Flight& light, Rng& rng) const {
     const V one(1), half(0.5), zero(0);
     const auto was_outside = light.is_outside > half;

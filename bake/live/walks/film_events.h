@@ -1,4 +1,4 @@
-// What can happen to a packet of directions at the film and at the base, for the walks.
+// This file holds what can happen to a packet of directions at the film and at the base, for the walks.
 //
 // The base forgets azimuth, so a walk carries polar cosines alone; where two directions meet at a facet their
 // azimuths are drawn anew. Sides, weights and densities are those of film/geometry.h. Lost lanes go on with
@@ -14,33 +14,33 @@ SUNBEAM_INLINE V sine_of(const V& cosine) {
   return sqrt(max(V(0), V(1) - squared(cosine)));
 }
 
-// GGX with Smith masking (sunbeam/detail/ggx.h has the equations) for the walks: isotropic, double precision,
-// lanes are directions, known by their polar cosines.
+// Evaluates GGX with Smith masking (sunbeam/detail/ggx.h has the equations) for the walks: isotropic, in
+// double precision. Lanes are directions, known by their polar cosines.
 template <class V>
 class FacetPackets {
  public:
   SUNBEAM_INLINE explicit FacetPackets(double alpha) : alpha2_(alpha * alpha), alpha_(alpha) {}
 
-  // cosine (1 + 2 Lambda).
+  // Returns cosine (1 + 2 Lambda).
   SUNBEAM_INLINE V root(const V& cosine) const { return sqrt(squared(cosine) * V(1 - alpha2_) + V(alpha2_)); }
-  // Projected area of the facets that light travelling at this cosine meets, which may be negative: towards
-  // them (microsurface.h).
+  // Returns the projected area of the facets that light travelling at this cosine meets. The cosine is
+  // negative towards them (microsurface.h).
   SUNBEAM_INLINE V area(const V& travel) const {
     return max(V(0.5) * (root(travel) - travel), V(kLeastArea));
   }
-  // G2(a, b) / G1(a).
+  // Returns G2(a, b) / G1(a).
   SUNBEAM_INLINE V g2_over_g1(const V& a, const V& root_a, const V& b, const V& root_b) const {
     return b * (a + root_a) / (root_a * b + root_b * a);
   }
-  // G2(a, b) / (a b).
+  // Returns G2(a, b) / (a b).
   SUNBEAM_INLINE V g2_over_cosines(const V& a, const V& b) const {
     return V(2) / (root(a) * b + root(b) * a);
   }
-  // D of a normal's cosine.
+  // Returns D of a normal's cosine.
   SUNBEAM_INLINE V d(const V& cos_h) const {
     return V(alpha2_ * kInvPi) / squared(V(1) - squared(cos_h) * V(1 - alpha2_));
   }
-  // D_vis / (w.h D): density of normals seen from w.
+  // Returns D_vis / (w.h D), where D_vis is the density of normals seen from w.
   SUNBEAM_INLINE V visible(const V& w, const V& root_w) const { return V(2) / (w + root_w); }
 
   struct Normal {
@@ -48,8 +48,8 @@ class FacetPackets {
     V cosine;  // with w
     V along;   // component along the tangent towards w
   };
-  // With density D_vis(h; w), for w on either side of the macro surface; by spherical caps (Dupuy and Benyoub
-  // 2023).
+  // Draws a normal with density D_vis(h; w), for w on either side of the macro surface, by spherical caps
+  // (Dupuy and Benyoub 2023).
   SUNBEAM_INLINE Normal sample(const V& w, const V& root_w, Rng& rng) const {
     // All lengths times root_w, which is that of the stretched w.
     const V alpha(alpha_), axis_x = alpha * sine_of(w);
@@ -69,11 +69,11 @@ class FacetPackets {
   double alpha2_, alpha_;
 };
 
-// One power a wavelength.
+// Holds one power a wavelength.
 template <class V>
 using Spectrum = std::array<V, kMostWavelengths>;
 
-// Entering along w, or by reciprocity leaving along it.
+// Describes light that enters along w, or by reciprocity leaves along it.
 template <class V>
 struct Crossing {
   V cosine;   // inside
@@ -89,7 +89,7 @@ struct Reflection {
   V density_reverse;  // and of coming back
 };
 
-// Powers at a facet and a fixed pair of directions.
+// Holds the powers at a facet and a fixed pair of directions.
 template <class V>
 struct Connection {
   V value;    // 1/sr, without the film's power
@@ -105,13 +105,13 @@ class Events {
 
   using Normal = typename FacetPackets<V>::Normal;
 
-  // A facet seen from w; the macro normal of a smooth film.
+  // Draws a facet seen from w; for a smooth film it is the macro normal.
   SUNBEAM_INLINE Normal meet(const V& w, Rng& rng) const {
     if (layers_.is_smooth()) return {V(1), w, V(0)};
     return facets_.sample(w, facets_.root(w), rng);
   }
 
-  // Through a facet, from outside to inside with far_per_near = n0 / n2, or the other way round.
+  // Takes light through a facet, from outside to inside with far_per_near = n0 / n2, or the other way round.
   SUNBEAM_INLINE Crossing<V> cross(const V& w, const Normal& h, double far_per_near) const {
     if (!layers_.bends) return {w, V(1), unbent_shadowing(w), h.cosine};
     const V eta(far_per_near);
@@ -132,7 +132,7 @@ class Events {
     return cross(w, meet(w, rng), layers_.index_ratio);
   }
 
-  // G1 of a over that of b; 1 for a smooth film.
+  // Returns G1 of a over that of b; 1 for a smooth film.
   SUNBEAM_INLINE V g1_ratio(const V& a, const V& b) const {
     return a * (b + facets_.root(b)) / (b * (a + facets_.root(a)));
   }
@@ -150,7 +150,8 @@ class Events {
 
   SUNBEAM_INLINE Reflection<V> reflect_below(const V& u, Rng& rng) const { return mirror(u, meet(u, rng)); }
 
-  // f_t(m -> w), Walter's function; forward is unused, reverse the density of m when cross() draws it for w.
+  // Returns f_t(m -> w), Walter's function. forward is unused; reverse is the density of m when cross() draws
+  // it for w.
   SUNBEAM_INLINE Connection<V> cross_towards(const V& m, const V& w, Rng& rng) const {
     const V eta(layers_.index_ratio);
     const V wm = dot(m, w, rng);
@@ -166,7 +167,7 @@ class Events {
             facets_.visible(w, facets_.root(w)) * wh * d * dh_dm};
   }
 
-  // f_r(u -> m) of the film's lower side.
+  // Returns f_r(u -> m) of the film's lower side.
   SUNBEAM_INLINE Connection<V> mirror_towards(const V& u, const V& m, Rng& rng) const {
     const V um = dot(u, m, rng);
     const V length = sqrt(max(V(2) + V(2) * um, V(1e-30)));
@@ -185,7 +186,7 @@ class Events {
     FilmPackets<V>(layers_.film_below, layers_.phases, film_cosine).reflectances(visit);
   }
 
-  // From the base up, as the guide has it.
+  // Describes light that leaves the base upwards, as the guide has it.
   struct Leaving {
     V cosine;
     V share;  // cos / (pi density)
@@ -208,14 +209,14 @@ class Events {
   }
 
  private:
-  // "straight": the paper's Tbar has no shadowing; index-matched "refract": the limit of Walter's function
-  // has.
+  // Returns the shadowing of light that passes unbent. In "straight" mode the paper's Tbar has none; in
+  // index-matched "refract" the limit of Walter's function has it.
   SUNBEAM_INLINE V unbent_shadowing(const V& w) const {
     if (layers_.straight || layers_.is_smooth()) return V(1);
     const V root_w = facets_.root(w);
     return facets_.g2_over_g1(w, root_w, w, root_w);
   }
-  // Of two directions whose azimuths differ by a random angle.
+  // Returns the dot product of two directions whose azimuths differ by a random angle.
   SUNBEAM_INLINE static V dot(const V& a, const V& b, Rng& rng) {
     return a * b + sine_of(a) * sine_of(b) * cos_half_turn(Uniform<V>::draw(rng));
   }

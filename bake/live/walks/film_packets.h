@@ -1,5 +1,5 @@
-// Airy's powers (bake/optics/thin_film.h has the equations and their letters) for the walks: double
-// precision, lanes are directions, one wavelength after the other.
+// This file computes Airy's powers (bake/optics/thin_film.h has the equations and their letters) for the
+// walks, in double precision. Lanes are directions; one wavelength comes after the other.
 //
 // All but the phase is shared by the wavelengths: x and y follow from cos(phi), phi = 2 k c1, alone, and by a
 // recurrence where wavelengths have even phases.
@@ -13,7 +13,7 @@
 
 namespace sunbeam::walk {
 
-// k = 2 pi n1 d0 / lambda of each wavelength.
+// Holds k = 2 pi n1 d0 / lambda of each wavelength.
 struct FilmPhases {
   std::array<double, kMostWavelengths> k{};
   int count = 0;
@@ -23,7 +23,8 @@ struct FilmPhases {
   double step() const { return k[1] - k[0]; }
 };
 
-// One side of a film with all divisions by indices done: cos^2 in a medium = offset + slope cos^2 outside.
+// Holds one side of a film with all divisions by indices done: cos^2 in a medium = offset + slope cos^2
+// outside.
 struct FilmSide {
   explicit FilmSide(const ThinFilm& film)
       : n0(film.exterior_ior),
@@ -43,7 +44,7 @@ struct FilmSide {
 template <class V>
 class FilmPackets {
  public:
-  // At cosines `c0` in the film's exterior; those <= 0 reflect everything.
+  // Takes the cosines `c0` in the film's exterior; those <= 0 reflect everything.
   SUNBEAM_INLINE FilmPackets(const FilmSide& film, const FilmPhases& phases, const V& c0) : phases_(phases) {
     const V c2_squared = V(film.offset2) + squared(c0) * V(film.slope2);
     const auto through = (c2_squared > V(0)) & (c0 > V(0));
@@ -64,7 +65,7 @@ class FilmPackets {
     per_c1_squared_ = V(1) / squared(c1_);
   }
 
-  // The refracted squared cosine is positive: light gets through.
+  // Returns 1 where the refracted squared cosine is positive, so that light gets through, else 0.
   SUNBEAM_INLINE V through() const { return through_; }
 
   // Calls visit(j, reflectance) for each wavelength.
@@ -72,7 +73,7 @@ class FilmPackets {
   SUNBEAM_INLINE void reflectances(F visit) const {
     each_phase(visit, [&](const V& c, const V& s, const V&) { return reflectance(c, s); });
   }
-  // Each lane at a wavenumber k of its own; k = 0 if the film is bare.
+  // Returns the reflectance, each lane at a wavenumber k of its own; k = 0 if the film is bare.
   SUNBEAM_INLINE V reflectance_at(const V& k) const {
     const auto power = [&](const V& c, const V& s, const V&) { return reflectance(c, s); };
     if (phases_.is_bare) return power(V(1), V(0), V(1));

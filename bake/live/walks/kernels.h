@@ -1,4 +1,4 @@
-// The walks compiled for each instruction set, and the choice of one for this machine.
+// This file gives access to the walks compiled for each instruction set, and chooses one for this processor.
 //
 // The kernel_*.cpp are compiled once for each instruction set, with SUNBEAM_ARCH its name.
 #pragma once
@@ -17,21 +17,22 @@ struct Kernels {
   void (*bidirectional)(const Layers& layers, double wi, double wo, Rng& rng, double* sums);
   void (*multiple_facets)(const Layers& layers, double wi, const double* wo, int exits, Rng& rng,
                           double* sums);
-  // Of its share of light that comes back to the base; see facets_walk.h.
+  // Adds an estimate of the share of light at the base that comes back to it; see facets_walk.h.
   void (*returns)(const Layers& layers, Rng& rng, double* sums);
-  // The film at one cosine and all wavelengths; writes up to kMostWavelengths.
+  // Writes the film's reflectance at one cosine and all wavelengths, up to kMostWavelengths numbers.
   void (*reflectances)(const FilmSide& film, const FilmPhases& phases, double cosine, double* r);
-  // power[j] *= exp(-tau[j] length), j < count; reads kMostWavelengths of tau.
+  // Does power[j] *= exp(-tau[j] length), j < count; reads kMostWavelengths of tau.
   void (*attenuate)(const double* tau, double length, int count, double* power);
 };
 
-// What every machine of this kind of processor has (x86-64: SSE2; ARM: NEON).
+// These need only what every processor of this kind has (x86-64: SSE2; ARM: NEON).
 extern const Kernels kBaselineKernels;
 #ifdef SUNBEAM_AVX2_KERNELS
 extern const Kernels kAvx2Kernels;
 #endif
 
-// The fastest that this machine runs, or the baseline if SUNBEAM_KERNELS asks for it (core/processor.h).
+// Returns the fastest that this processor runs, or the baseline if SUNBEAM_KERNELS asks for it
+// (sunbeam/detail/processor.h).
 const Kernels& best_kernels();
 
 }  // namespace sunbeam::walk

@@ -1,4 +1,4 @@
-// The layered material as the walks need it: numbers only, prepared once.
+// This file prepares the layered material as the walks need it: numbers only, made once.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ struct Layers {
   bool product;   // exp(-tau / (cos_i cos_o)); else exp(-tau (1 / cos_i + 1 / cos_o))
   double radiance_scale;
 
-  // Forecast of the power that ever visits the base, for walks that end (facets_walk.h): of light that is
+  // These forecast the power that ever visits the base, for walks that end (facets_walk.h): of light that is
   // there, 1 / (1 - share that comes back), and of light on its way back.
   std::array<double, kMostWavelengths> visits{}, later_visits{};
   BaseGuide guide;       // BaseForecast::going_on
@@ -54,13 +54,15 @@ struct Layers {
     summarise();
   }
 
-  // Of mirroring at the upper surface: equal shares of what reflects there and of what comes back from below.
+  // Returns the chance of mirroring at the upper surface, which gives equal shares to what reflects there and
+  // to what comes back from below.
   double entry_chance(double reflectance) const {
     return reflectance / (reflectance + (1 - reflectance) * worth_below);
   }
 
   bool is_smooth() const { return alpha == 0; }
-  // Facets bend what passes, so that a given direction outside has a density of directions inside.
+  // Says whether facets bend what passes, so that a given direction outside has a density of directions
+  // inside.
   bool has_glossy_crossing() const { return alpha > 0 && bends; }
 
  private:

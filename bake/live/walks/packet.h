@@ -1,4 +1,4 @@
-// Sixteen numbers worked on side by side: the lanes of a packet are independent walks.
+// This file works on sixteen numbers side by side: the lanes of a packet are independent walks.
 //
 // Packets are made of the compiler's vectors (GCC and Clang) and keep the number of lanes whatever the width
 // of the machine's registers, so that every instruction set gives the same bits (none of those used fuses
@@ -20,8 +20,8 @@ namespace sunbeam::walk {
 
 inline constexpr int kLanes = 16;
 
-// An instruction set by its registers. Its name is part of every kernel's, which keeps the linker from
-// merging copies for different machines.
+// These describe an instruction set by its registers. Its name is part of every kernel's, which keeps the
+// linker from merging copies for different processors.
 struct Baseline {  // what every machine has (x86-64: SSE2, Arm: NEON)
   static constexpr int kWidth = 2;
   using Register = double __attribute__((vector_size(16)));
@@ -33,7 +33,8 @@ struct Avx2 {
   using Bits = std::uint64_t __attribute__((vector_size(32)));
 };
 
-// sum_k c_k x^k of ten or twelve terms, in pairs (Estrin): a third of the waiting of Horner's scheme.
+// Returns sum_k c_k x^k of ten or twelve terms, in pairs (Estrin): this waits a third of what Horner's scheme
+// does.
 template <class V, std::size_t kTerms>
 SUNBEAM_INLINE V polynomial(const double (&c)[kTerms], const V& x) {
   static_assert(kTerms == 10 || kTerms == 12);
@@ -44,7 +45,7 @@ SUNBEAM_INLINE V polynomial(const double (&c)[kTerms], const V& x) {
   return ((pair(0) + pair(2) * x2) + (pair(4) + pair(6) * x2) * x4) + top * x8;
 }
 
-// One register.
+// Holds the numbers of one register.
 template <class Arch>
 struct Batch {
   static constexpr int kCount = Arch::kWidth;
@@ -92,8 +93,8 @@ struct Batch {
     return generate([&](int lane) { return __builtin_sqrt(a.v[lane]); });
   }
 
-  // exp(x) for x <= 0, to 1e-14 relative; 1e-304 below -700. x = n ln(2) + r with |r| <= ln(2) / 2, Taylor's
-  // series for e^r, and n goes into the exponent bits.
+  // Returns exp(x) for x <= 0, to 1e-14 relative; 1e-304 below -700. x = n ln(2) + r with |r| <= ln(2) / 2,
+  // Taylor's series for e^r, and n goes into the exponent bits.
   SUNBEAM_INLINE friend Batch exp_negative(const Batch& x) {
     const Batch round(0x1.8p52 + 1023), clamped = max(x, Batch(-700));
     const Batch shifted = clamped * Batch(std::numbers::log2e) + round;  // low bits: n + 1023
@@ -105,8 +106,9 @@ struct Batch {
     return polynomial<Batch>(kTerm, r) * Batch((Register)((Bits)shifted.v << 52));
   }
 
-  // ln(x) for 0 < x <= 1, to 1e-15 relative; about -709 at 0. x = 2^k m with m in [1/sqrt(2), sqrt(2)), then
-  // ln(m) = 2 artanh((m - 1) / (m + 1)) by its series; k leaves the exponent bits by way of 2^52 + k.
+  // Returns ln(x) for 0 < x <= 1, to 1e-15 relative; about -709 at 0. x = 2^k m with m in [1/sqrt(2),
+  // sqrt(2)), then ln(m) = 2 artanh((m - 1) / (m + 1)) by its series; k leaves the exponent bits by way of
+  // 2^52 + k.
   SUNBEAM_INLINE friend Batch log_of_share(const Batch& x) {
     constexpr std::uint64_t kLeast = 0x3fe6a09e667f3bcd;  // 1 / sqrt(2)
     const Bits shifted = (Bits)x.v + (0x3ff0000000000000 - kLeast);
@@ -119,8 +121,8 @@ struct Batch {
   }
 };
 
-// Two halves, each a batch or again two halves: members, not an array, so that compilers keep them in
-// registers.
+// Holds two halves, each a batch or again two halves. They are members, not an array, so that compilers keep
+// them in registers.
 template <class Arch, int kCount = kLanes>
 struct Packet {
   static constexpr int kHalf = kCount / 2;
@@ -132,7 +134,7 @@ struct Packet {
   SUNBEAM_INLINE Packet(double value) : low(value), high(value) {}
   SUNBEAM_INLINE Packet(const Half& l, const Half& h) : low(l), high(h) {}
 
-  // f(0), f(1), ...; not by way of memory, which would wait for many small stores.
+  // Returns f(0), f(1), ... It does not go by way of memory, which would wait for many small stores.
   template <class F>
   SUNBEAM_INLINE static Packet generate(F f) {
     return {Half::generate(f), Half::generate([&](int lane) { return f(lane + kHalf); })};
@@ -198,7 +200,7 @@ struct Packet {
   }
 };
 
-// One lane.
+// These are the same functions for one lane.
 using std::max, std::min, std::sqrt;
 SUNBEAM_INLINE double exp_negative(double x) { return std::exp(x); }
 SUNBEAM_INLINE double select(bool mask, double yes, double no) { return mask ? yes : no; }
@@ -209,7 +211,7 @@ SUNBEAM_INLINE V squared(const V& x) {
   return x * x;
 }
 
-// cos(pi u) for u in [0, 1]: Taylor's sine of pi (1/2 - u), exact to 1e-13.
+// Returns cos(pi u) for u in [0, 1] by Taylor's sine of pi (1/2 - u), exact to 1e-13.
 template <class V>
 SUNBEAM_INLINE V cos_half_turn(const V& u) {
   const V x = V(0.5) - u;
@@ -220,7 +222,8 @@ SUNBEAM_INLINE V cos_half_turn(const V& u) {
   return polynomial<V>(kTerm, x * x) * x;
 }
 
-// cos(x) for |x| < 1e6, to 1e-13 + 1e-16 |x|: reduced by pi in three parts, then Taylor's series.
+// Returns cos(x) for |x| < 1e6, to 1e-13 + 1e-16 |x|: x is reduced by pi in three parts, then Taylor's series
+// follows.
 template <class V>
 SUNBEAM_INLINE V cos_of_phase(const V& x) {
   const V round(0x1.8p52);  // adding and subtracting it rounds to the nearest integer
@@ -241,12 +244,12 @@ SUNBEAM_INLINE V cos_of_phase(const V& x) {
   return sum * (V(1) - V(8) * squared(odd));
 }
 
-// Rows of numbers that lie one in each of kLanes equal parts of [0, 1), in random order; see Uniform.
+// Each row holds numbers that lie one in each of kLanes equal parts of [0, 1), in random order; see Uniform.
 inline constexpr std::uint32_t kStrata = 64;
 extern const std::array<std::array<double, kLanes>, kStrata> kStratum;
 
-// One uniform number in [0, 1) a lane. A random shift makes each lane uniform by itself; the rows spread the
-// lanes over the interval and match successive dimensions anew.
+// Draws one uniform number in [0, 1) a lane. A random shift makes each lane uniform by itself; the rows
+// spread the lanes over the interval and match successive dimensions anew.
 template <class V>
 struct Uniform {
   SUNBEAM_INLINE static V draw(Rng& rng) {

@@ -1,4 +1,5 @@
-// The unidirectional estimator of the rest, for a packet of walks at once (templates; see pfmc.h).
+// This file holds the unidirectional estimator of the rest, for a packet of walks at once (templates; see
+// pfmc.h).
 //
 // Throughputs are powers per wavelength. At the base a walk that arrived along m connects to m', a crossing
 // drawn from wo: f1(m, m') T(wo -> m'). That alone serves every film: f1 is bounded by kd / pi and the
@@ -15,7 +16,7 @@ namespace sunbeam::walk {
 // Measured: earlier costs more in noise, later in time.
 inline constexpr double kRouletteStart = 0.05;
 
-// Directions served by one walk with "product"; kept on the stack.
+// One walk with "product" serves this many directions at most; they are kept on the stack.
 inline constexpr int kMostExits = 8;
 
 // Decides for all lanes together when a walk ends.
@@ -36,14 +37,14 @@ class Roulette {
   double left_ = 1;
 };
 
-// Light on its way down that is about to reach the base.
+// Describes light on its way down that is about to reach the base.
 template <class V>
 struct Arrival {
   V cosine;
   Spectrum<V> throughput;
 };
 
-// What a walk does between two visits of the base, on either side of a path.
+// Makes the steps of a walk between two visits of the base, on either side of a path.
 template <class V>
 class Steps {
  public:
@@ -51,7 +52,7 @@ class Steps {
 
   const Events<V>& events() const { return events_; }
 
-  // The crossing from outside along w.
+  // Takes light through the film from outside along w, and returns that crossing.
   SUNBEAM_INLINE Crossing<V> enter(const V& w, Rng& rng, Arrival<V>& arrival) const {
     const Crossing<V> crossing = events_.cross(w, rng);
     arrival.cosine = crossing.cosine;
@@ -60,12 +61,13 @@ class Steps {
     return crossing;
   }
 
-  // With "sum" the pigment's share of one direction; with "product" it is known only with the other one.
+  // Applies with "sum" the pigment's share of one direction; with "product" it is known only with the other
+  // one.
   SUNBEAM_INLINE void arrive(Arrival<V>& light) const {
     if (!layers_.product) events_.attenuate(V(1) / light.cosine, light.throughput);
   }
 
-  // From the base up; throughputs become those of the light that leaves along the cosine returned.
+  // Leaves the base upwards; throughputs become those of the light that leaves along the cosine returned.
   SUNBEAM_INLINE V leave_base(Arrival<V>& light, Rng& rng) const {
     const auto up = events_.leave_base(layers_.guide, rng);
     for (int j = 0; j < layers_.count; ++j) light.throughput[j] *= V(layers_.albedo[j]) * up.share;
@@ -74,7 +76,7 @@ class Steps {
     return up.cosine;
   }
 
-  // From below the film back down. The factor is roulette's, 0 at the walk's end.
+  // reflect() mirrors light below the film back down. The factor is roulette's, 0 at the walk's end.
   struct Down {
     Reflection<V> event;
     double factor;
@@ -115,7 +117,8 @@ class UnidirectionalWalk {
   }
 
  private:
-  // With "sum" f1 is a product: all lanes of the walk, at all their visits, connect to all lanes of an exit.
+  // Adds the estimate with "sum", where f1 is a product: all lanes of the walk, at all their visits, connect
+  // to all lanes of an exit.
   SUNBEAM_INLINE void add_sum(double wi, const double* wo, int exits, Rng& rng, double* sums) const {
     Spectrum<V> arrived;
     for (int j = 0; j < layers_.count; ++j) arrived[j] = V(0);
@@ -130,7 +133,7 @@ class UnidirectionalWalk {
     }
   }
 
-  // With "product" each lane connects to its own.
+  // Adds the estimate with "product", where each lane connects to its own.
   SUNBEAM_INLINE void add_product(double wi, const double* wo, int exits, Rng& rng, double* sums) const {
     Arrival<V> exit[kMostExits];
     Spectrum<V> sum[kMostExits];
@@ -165,7 +168,7 @@ class UnidirectionalWalk {
     }
   }
 
-  // From the base's kd / pi on.
+  // Prepares the way out along wo, from the base's kd / pi on.
   SUNBEAM_INLINE void prepare_exit(double wo, Rng& rng, Arrival<V>& exit) const {
     steps_.enter(V(wo), rng, exit);
     steps_.arrive(exit);

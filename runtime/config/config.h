@@ -1,4 +1,4 @@
-// Reading TOML files (recipes, scenes) with errors a person can act on.
+// This file reads TOML files (recipes, scenes) and reports errors that a person can act on.
 //
 // A ConfigTable remembers every key it was asked for. finish() refuses any key in the file that was never
 // asked for and names the nearest one that was, so a typo cannot pass silently.
@@ -16,7 +16,7 @@
 
 namespace sunbeam {
 
-// Closed interval of allowed values.
+// Holds a closed interval of allowed values.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
@@ -31,30 +31,32 @@ class ConfigTable {
                            const std::vector<std::string>& overrides = {});
 
   bool has(std::string_view key) const;
-  // As has(), but the key counts as asked for only if it is there.
+  // Does the same as has(), but the key counts as asked for only if it is there.
   bool has_removed(std::string_view key) const;
   bool is_number(std::string_view key) const;
   bool is_list(std::string_view key) const;
   bool is_table(std::string_view key) const;
   bool is_list_of_lists(std::string_view key) const;  // by its first element
 
-  // Each throws Error when the key is missing and no fallback is given, or when type or range are wrong.
+  // These return the value of a key. Each throws Error when the key is missing and no fallback is given, or
+  // when type or range are wrong.
   double number(std::string_view key, const Range& allowed, std::optional<double> fallback = {}) const;
   int integer(std::string_view key, int low, int high, std::optional<int> fallback = {}) const;
   bool boolean(std::string_view key, bool fallback) const;
   std::string string(std::string_view key, std::optional<std::string> fallback = {}) const;
-  // One of `allowed`; returns its index.
+  // Reads one of `allowed` and returns its index.
   int choice(std::string_view key, const std::vector<std::string>& allowed,
              std::optional<int> fallback = {}) const;
   std::vector<double> numbers(std::string_view key, const Range& allowed) const;
-  // A list of at least two [x, y] with ascending x: a curve.
+  // Returns a curve: a list of at least two [x, y] with ascending x.
   std::vector<std::pair<double, double>> curve(std::string_view key, const Range& allowed_x,
                                                const Range& allowed_y) const;
   Vec3 vec3(std::string_view key, std::optional<Vec3> fallback = {}) const;
-  // One number (grey) or a list of three.
+  // Reads one number (grey) or a list of three.
   Rgb rgb(std::string_view key, const Range& allowed, std::optional<Rgb> fallback = {}) const;
 
-  // A missing [section] is an empty table; a missing [[list]] has no entries.
+  // These return a section or the entries of a list. A missing [section] is an empty table; a missing
+  // [[list]] has no entries.
   ConfigTable table(std::string_view key) const;
   std::vector<ConfigTable> tables(std::string_view key) const;
 
@@ -65,9 +67,9 @@ class ConfigTable {
   [[noreturn]] void fail(std::string_view key, const std::string& message) const;
 
   const std::string& file() const;
-  // The folder of the file, for paths that are relative to it.
+  // Resolves a path that is relative to the folder of the file.
   std::string resolve(const std::string& relative_path) const;
-  // The whole document, overrides applied, as canonical TOML text.
+  // Returns the whole document, overrides applied, as canonical TOML text.
   std::string canonical_text() const;
 
  private:
@@ -76,7 +78,7 @@ class ConfigTable {
   std::shared_ptr<Node> node_;
 };
 
-// The candidate with the smallest edit distance to `word`.
+// Returns the candidate with the smallest edit distance to `word`.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace sunbeam

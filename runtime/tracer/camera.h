@@ -1,4 +1,4 @@
-// A camera with a thin lens, or a pinhole.
+// This is a camera with a thin lens, or a pinhole.
 #pragma once
 
 #include "runtime/tracer/ray.h"
@@ -11,8 +11,8 @@ class Camera {
  public:
   Camera(const CameraView& view, int width, int height);
 
-  // Through the point (x, y) of the picture, in pixels from its top left corner; pixel (i, j) covers
-  // [i, i + 1) x [j, j + 1). A lens takes a point on it, uniformly, from `rng`; a pinhole leaves it
+  // Returns the ray through the point (x, y) of the picture, in pixels from its top left corner; pixel (i, j)
+  // covers [i, i + 1) x [j, j + 1). A lens takes a point on it, uniformly, from `rng`; a pinhole leaves it
   // untouched.
   Ray ray(double x, double y, Rng& rng) const {
     const Vec3 in_focus = top_left_ + x * pixel_x_ + y * pixel_y_;
@@ -23,7 +23,7 @@ class Camera {
   Ray through_lens(const Vec3& in_focus, Rng& rng) const;
 
   Vec3 position_;
-  // The picture at the distance in focus: its corner and one pixel to the right and down.
+  // These describe the picture at the distance in focus: its corner and one pixel to the right and down.
   Vec3 top_left_, pixel_x_, pixel_y_;
   Vec3 lens_x_, lens_y_;  // radii of the lens
   bool has_lens_;

@@ -1,5 +1,5 @@
-// Embree 3.13 and 4, whose single rays differ in one argument. Only embree_scene and its benchmark include
-// this.
+// This file hides the one argument in which single rays of Embree 3.13 and 4 differ. Only embree_scene and
+// its benchmark include this.
 #pragma once
 
 #if SUNBEAM_EMBREE_MAJOR >= 4

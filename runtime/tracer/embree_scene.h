@@ -1,4 +1,4 @@
-// Visibility and nearest hits through Embree. No file but embree_* includes Embree.
+// This file finds visibility and nearest hits through Embree. No file but embree_* includes Embree.
 #pragma once
 
 #include <functional>
@@ -15,12 +15,12 @@ struct SurfaceHit {
   Vec3 position;          // on the surface, to double precision (spheres) or single precision (meshes)
   Vec3 geometric_normal;  // unit; out of a sphere, by the winding of a triangle
   Vec3 shading_normal;    // unit, interpolated, on the side of the geometric normal
-  // Unit, along dp/du (increasing u), continuous over smooth meshes; only nearly perpendicular to the shading
-  // normal. u of a sphere is the longitude about its z axis. Zero where no direction is known: without
-  // texture coordinates, where they are degenerate, at the poles of a sphere.
+  // It is unit, along dp/du (increasing u), continuous over smooth meshes; only nearly perpendicular to the
+  // shading normal. u of a sphere is the longitude about its z axis. It is zero where no direction is known:
+  // without texture coordinates, where they are degenerate, at the poles of a sphere.
   Vec3 tangent;
-  // Texture coordinates and dp/du, dp/dv, interpolated; only for objects whose material needs them, having a
-  // relief or varying, else 0.
+  // These are texture coordinates and dp/du, dp/dv, interpolated. Only objects whose material needs them,
+  // having a relief or varying, have them; else they are 0.
   Point2 uv;
   UvDerivatives derivatives;
   double distance;  // from the origin of the ray
@@ -41,11 +41,11 @@ class EmbreeScene {
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-  // The nearest hit, on either side of a surface. Thread-safe.
+  // Returns the nearest hit, on either side of a surface. It is thread-safe.
   std::optional<SurfaceHit> intersect(const Ray& ray) const;
 
-  // Whether anything lies between the origin and a point `distance` away (infinite: anywhere). The last 0.01
-  // % of the way is left out, so that the light at the end does not shadow itself. Thread-safe.
+  // Says whether anything lies between the origin and a point `distance` away (infinite: anywhere). The last
+  // 0.01 % of the way is left out, so that the light at the end does not shadow itself. It is thread-safe.
   bool occluded(const Ray& ray, double distance) const;
 
  private:

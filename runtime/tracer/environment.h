@@ -1,4 +1,5 @@
-// Radiance arriving from infinity, with importance sampling of lat-long maps (mapping: EnvironmentSource).
+// This file gives the radiance that arrives from infinity, and draws directions from lat-long maps by
+// importance. EnvironmentSource describes the mapping.
 #pragma once
 
 #include "runtime/tracer/scene.h"
@@ -15,15 +16,16 @@ class Environment {
   // Only a map can be sampled. A constant environment is left to BSDF sampling, which is optimal for it.
   bool can_sample() const { return !source_.map.empty(); }
 
-  // Of the map over the sphere, channels averaged. Only if can_sample().
+  // Returns the mean radiance of the map over the sphere, channels averaged. It may be called only if
+  // can_sample().
   double mean_radiance() const { return kPi / 2 * rows_.integral(); }
 
-  // Radiance along the unit direction `wi` that points away from the scene.
+  // Returns the radiance along the unit direction `wi` that points away from the scene.
   Rgb radiance(const Vec3& wi) const;
 
-  // A direction with density proportional to the radiance of the map, channels averaged.
+  // Draws a direction with density proportional to the radiance of the map, channels averaged.
   Vec3 sample(const Point2& u) const;
-  // Density of sample() per solid angle; 0 if !can_sample().
+  // Returns the density of sample() per solid angle (1/sr); 0 if !can_sample().
   double pdf(const Vec3& wi) const;
 
  private:

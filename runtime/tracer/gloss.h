@@ -1,7 +1,7 @@
-// A smooth or rough dielectric over black: eyes, wet stone. What enters is absorbed.
+// This is the BSDF of a smooth or rough dielectric over black: eyes, wet stone. What enters is absorbed.
 //
 // f = F(wo.h) D(h) G2(wo, wi) / (4 cos_o cos_i) of Walter et al. 2007, F unpolarised Fresnel (Cook and
-// Torrance 1982), D and G2 those of Ggx. Samples visible normals; those that mirror below the horizon are
+// Torrance 1982), D and G2 those of Ggx. It samples visible normals; those that mirror below the horizon are
 // empty.
 #pragma once
 
@@ -12,7 +12,7 @@ namespace sunbeam {
 
 class Gloss final : public Bsdf {
  public:
-  // ior > 1; roughness: GGX alpha, > 0.
+  // Takes ior > 1 and as roughness the GGX alpha, > 0.
   Gloss(double ior, double roughness) : ior_(ior), ggx_({roughness, roughness}) {}
 
   Rgb eval(const Vec3& wo, const Vec3& wi, Rng&) const override {

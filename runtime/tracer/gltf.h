@@ -1,4 +1,4 @@
-// glTF 2.0: .gltf with its buffers beside or inside it, and .glb.
+// This file reads glTF 2.0: .gltf with its buffers beside or inside it, and .glb.
 #pragma once
 
 #include <string>
@@ -7,8 +7,9 @@
 
 namespace sunbeam {
 
-// The triangles of all nodes of the default scene (the first if none is named), each node's matrix applied.
-// Throws Error as load_mesh(), and for what is not read: compressed or sparse data and triangle strips.
+// Returns the triangles of all nodes of the default scene (the first if none is named), each node's matrix
+// applied. Throws Error as load_mesh() does, and for what is not read: compressed or sparse data and triangle
+// strips.
 LoadedMesh load_gltf(const std::string& path);
 
 }  // namespace sunbeam

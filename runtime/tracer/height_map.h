@@ -1,4 +1,4 @@
-// Heights on the unit square that repeat in both directions: what a relief is made of.
+// This file holds heights on the unit square that repeat in both directions: what a relief is made of.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ struct HeightMap {
     double height = 0;
     Point2 gradient;  // d height / d(u, v), exact
   };
-  // At any (u, v); whole numbers are dropped from both. The map must not be empty.
+  // Evaluates the surface at any (u, v); whole numbers are dropped from both. The map must not be empty.
   Sample sample(const Point2& uv) const;
 
   float at(int column, int row) const {
@@ -29,13 +29,13 @@ struct HeightMap {
   }
 };
 
-// .exr: channel Y, else R, of any pixel type. .png: grey, 0 to 1; 16 bits as they stand, 8 bits without
-// undoing sRGB, for heights are no colours. Throws Error naming the file if it cannot be read or holds a
-// value that is not finite or beyond +-1e6.
+// Reads heights. Of an .exr it takes channel Y, else R, of any pixel type; of a .png grey, 0 to 1, 16 bits as
+// they stand, 8 bits without undoing sRGB, for heights are no colours. Throws Error naming the file if it
+// cannot be read or holds a value that is not finite or beyond +-1e6.
 HeightMap load_height_map(const std::string& path);
 
-// .exr: one 32-bit float channel Y. .png: 16-bit grey, values clamped to [0, 1]. Throws Error for another
-// extension.
+// Writes heights: an .exr has one 32-bit float channel Y, a .png 16-bit grey, values clamped to [0, 1]. Both
+// throw Error for another extension.
 void require_height_map_extension(const std::string& path);
 void write_height_map(const std::string& path, const HeightMap& map);
 

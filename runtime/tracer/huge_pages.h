@@ -1,5 +1,5 @@
-// Memory for large arrays that are read here and there: in huge pages, where the system has them on request,
-// few reads wait for an address to be translated as well.
+// This file gives memory to large arrays that are read here and there. In huge pages, where the system has
+// them on request, few reads wait for an address to be translated as well.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace sunbeam {
 
-// An allocator for std::vector.
+// Serves std::vector as an allocator.
 template <class T>
 struct HugePages {
   using value_type = T;

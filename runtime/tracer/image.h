@@ -1,4 +1,5 @@
-// A picture in memory: linear Rec.709 RGB, 3 floats per pixel, rows from the top, pixels from the left.
+// This file holds a picture in memory: linear Rec.709 RGB, 3 floats per pixel, rows from the top, pixels from
+// the left.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +9,7 @@
 
 namespace sunbeam {
 
-// Pixels [x0, x1) x [y0, y1) of a picture of width x height, counted from its top left corner.
+// Names the pixels [x0, x1) x [y0, y1) of a picture of width x height, counted from its top left corner.
 struct PixelWindow {
   int width = 0, height = 0;
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
@@ -24,14 +25,14 @@ struct Image {
   std::vector<float> rgb;
 
   Image() = default;
-  // All black.
+  // Makes a picture that is all black.
   Image(int w, int h)
       : width(w), height(h), rgb(3 * static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
 
   bool empty() const { return rgb.empty(); }
 
   Rgb get(int x, int y) const { return at(index(x, y) / 3); }
-  // By its place in the rows.
+  // Returns a pixel by its place in the rows.
   Rgb at(std::size_t i) const { return {rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]}; }
   void set(int x, int y, const Rgb& value) {
     float* pixel = &rgb[index(x, y)];

@@ -1,5 +1,5 @@
-// Pictures on disk. Every file is written beside its target under a temporary name and renamed, so a reader
-// never sees half a picture. All functions throw Error naming the file.
+// This file reads and writes pictures on disk. Every file is written beside its target under a temporary name
+// and renamed, so a reader never sees half a picture. All functions throw Error naming the file.
 #pragma once
 
 #include <map>
@@ -16,36 +16,38 @@ struct ExrImage {
   Image mean;
   Image variance;  // of the pixel mean; empty if the file has none
   std::map<std::string, std::string> attributes;
-  // Further channels by name, each of as many values as there are pixels, rows from the top.
+  // These are further channels by name, each of as many values as there are pixels, rows from the top.
   std::map<std::string, std::vector<float>> layers{};
-  // Where the pixels lie (the data window) in the whole picture (the display window); all of it if not given.
+  // Says where the pixels lie (the data window) in the whole picture (the display window); they are all of it
+  // if not given.
   std::optional<PixelWindow> window{};
 };
 
-// A picture of three layers: NAME.FIRST, NAME.SECOND, NAME.THIRD of `axes`, such as albedo.R or normal.X.
+// Adds a picture as three layers: NAME.FIRST, NAME.SECOND, NAME.THIRD of `axes`, such as albedo.R or
+// normal.X.
 void insert_layers(ExrImage& exr, const std::string& name, const std::string& axes, const Image& image);
-// The other way round; empty if one is missing.
+// Goes the other way round; the picture is empty if a layer is missing.
 Image extract_layers(const ExrImage& exr, const std::string& name, const std::string& axes);
 
-// Channels R, G, B, unless `variance` is empty variance.R, variance.G, variance.B, and the layers; all 32-bit
-// float, linear Rec.709 (and the header says so), signs kept. `attributes` become string attributes of the
-// header.
+// Writes channels R, G, B, unless `variance` is empty variance.R, variance.G, variance.B, and the layers. All
+// are 32-bit float, linear Rec.709 (and the header says so), signs kept. `attributes` become string
+// attributes of the header.
 void write_exr(const std::string& path, const ExrImage& image);
 
 // Reads R, G, B of any pixel type as float, the variance where there is one, all other channels into layers,
 // all string attributes, and the window, shifted so that the whole picture begins at 0, 0.
 ExrImage read_exr(const std::string& path);
 
-// 8-bit sRGB after display_color() on every pixel. Negative components, which a PNG cannot hold, are raised
-// to 0: returns how often and how much light that added.
+// Writes 8-bit sRGB after display_color() on every pixel. Negative components, which a PNG cannot hold, are
+// raised to 0: returns how often and how much light that added.
 ClipAccount write_png(const std::string& path, const Image& image);
 
-// The content of such a file; the image must not be empty.
+// Returns the content of such a file; the image must not be empty.
 std::string png_bytes(const Image& image, ClipAccount& account);
 
-// Scene-linear to display-linear, [0, 1]. Up to 0.5 nothing changes; above, a smooth shoulder approaches 1.
-// Half of the result keeps the ratios of the channels, so that a bright iridescent highlight keeps its hue,
-// and half compresses each channel alone, so that a very bright one still turns towards white.
+// Takes scene-linear to display-linear, [0, 1]. Up to 0.5 nothing changes; above, a smooth shoulder
+// approaches 1. Half of the result keeps the ratios of the channels, so that a bright iridescent highlight
+// keeps its hue, and half compresses each channel alone, so that a very bright one still turns towards white.
 Rgb display_color(const Rgb& scene_linear);
 
 }  // namespace sunbeam

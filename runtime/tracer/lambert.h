@@ -1,4 +1,4 @@
-// The diffuse BSDF: f = albedo / pi.
+// This is the diffuse BSDF: f = albedo / pi.
 #pragma once
 
 #include "sunbeam/bsdf.h"

@@ -1,5 +1,5 @@
-// Which of the sources of light a sample is spent on: chances that depend on the receiver, so that neither a
-// bright light far away nor a dim one near by is drawn more often than it matters.
+// This file chooses which of the sources of light a sample is spent on. The chances depend on the receiver,
+// so that neither a bright light far away nor a dim one near by is drawn more often than it matters.
 //
 // At x a source has the weight
 //   L A / (d^2 + A / pi)   seen at distance d: the irradiance by a disc of its area A and radiance L (a
@@ -33,12 +33,12 @@ class LightChoice {
     std::size_t source;
     double chance;  // > 0
   };
-  // For `u` uniform in [0, 1); size() >= 1. A single source costs nothing.
+  // Chooses a source for `u` uniform in [0, 1); size() >= 1. A single source costs nothing.
   Choice choose(const Vec3& from, double u) const {
     return size_ == 1 ? Choice{0, 1} : choose_among_several(from, u);
   }
 
-  // With which choose() returns `source`.
+  // Returns the chance with which choose() returns `source`.
   double chance(std::size_t source, const Vec3& from) const {
     return size_ == 1 ? 1 : chance_among_several(source, from);
   }
@@ -49,7 +49,7 @@ class LightChoice {
     double power;           // L A or I
     double softening;       // A / pi
   };
-  // What makes weights chances, at one receiver.
+  // Turns weights into chances, at one receiver.
   struct Shares {
     double even, of_weight;
     double of(double weight) const { return even + of_weight * weight; }

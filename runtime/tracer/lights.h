@@ -1,4 +1,4 @@
-// All sources of light of a scene: quads, spheres, points, far-off ones and the environment.
+// This file holds all sources of light of a scene: quads, spheres, points, far-off ones and the environment.
 //
 // A sample picks one of the sources that can be sampled (all but a constant environment) as light_choice.h
 // tells; every density below has that choice in it and thus depends on the receiver.
@@ -23,7 +23,7 @@ struct LightSample {
   bool is_dirac;    // a point light, or a far-off one without size: no other technique can find it
 };
 
-// What a ray sees when it meets a light, and the density with which sample() would have chosen that
+// Holds what a ray sees when it meets a light, and the density with which sample() would have chosen that
 // direction.
 struct Emission {
   Rgb radiance;
@@ -35,11 +35,12 @@ class Lights {
   // `scene` must outlive this.
   explicit Lights(const Scene& scene);
 
-  // Empty if there is nothing to sample, or if the light chosen does not shine towards `from`.
+  // Draws a light and a direction to it. The result is empty if there is nothing to sample, or if the light
+  // chosen does not shine towards `from`.
   std::optional<LightSample> sample(const Vec3& from, Rng& rng) const;
 
-  // Of a ray from `from` with unit `direction` that meets light `light` (SurfaceHit::light) after `distance`.
-  // Black on the back side.
+  // Returns the emission that a ray from `from` with unit `direction` sees when it meets light `light`
+  // (SurfaceHit::light) after `distance`. It is black on the back side.
   Emission surface(int light, const Vec3& from, const Vec3& direction, double distance) const;
 
   // Visits the Emission of everything that a ray from `from` with unit `direction` sees when it leaves the
@@ -53,7 +54,7 @@ class Lights {
   }
 
  private:
-  // A directional light of some angular size.
+  // Describes a directional light of some angular size.
   struct Disc {
     Vec3 towards;
     double cos_radius;

@@ -1,4 +1,4 @@
-// Meshes in files: OBJ, PLY and glTF 2.0 in, OBJ and PLY out.
+// This file reads meshes from OBJ, PLY and glTF 2.0 files, and writes OBJ and PLY.
 #pragma once
 
 #include <cstddef>
@@ -13,21 +13,21 @@ struct LoadedMesh {
   std::size_t dropped = 0;  // triangles without area, which are left out
 };
 
-// .obj, .ply (ascii or binary), .gltf, .glb. All groups, primitives and nodes as one mesh, the transforms of
-// glTF nodes applied; materials are ignored, points and lines left out. Normals and texture coordinates (the
-// first set) are used only if all parts have them; v points up, as in OBJ. Axes stay as they are: glTF has y
-// up, scenes have z up. Throws Error naming the file for another extension, a file that is missing or
-// damaged, an index out of range, a number that is not finite, a normal of length zero, or if no triangle
-// with an area is left.
+// Reads .obj, .ply (ascii or binary), .gltf or .glb. All groups, primitives and nodes become one mesh, the
+// transforms of glTF nodes applied; materials are ignored, points and lines left out. Normals and texture
+// coordinates (the first set) are used only if all parts have them; v points up, as in OBJ. Axes stay as they
+// are: glTF has y up, scenes have z up. Throws Error naming the file for another extension, a file that is
+// missing or damaged, an index out of range, a number that is not finite, a normal of length zero, or if no
+// triangle with an area is left.
 LoadedMesh load_mesh(const std::string& path);
 
-// .obj, or .ply (binary, little-endian, single precision; texture coordinates as s, t). Throws Error for
-// another extension or if the file cannot be written.
+// Writes .obj, or .ply (binary, little-endian, single precision; texture coordinates as s, t). Throws Error
+// for another extension or if the file cannot be written.
 void require_mesh_extension(const std::string& path);
 void write_mesh(const std::string& path, const Mesh& mesh);
 
-// What every importer of indexed triangles ends with: the checks of load_mesh() on numbers and areas, normals
-// made unit. Indices must be in range.
+// Finishes a mesh, as every importer of indexed triangles does: it makes the checks of load_mesh() on numbers
+// and areas, and makes normals unit. Indices must be in range.
 LoadedMesh checked_mesh(const std::string& path, Mesh mesh);
 
 }  // namespace sunbeam

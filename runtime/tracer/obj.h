@@ -1,5 +1,5 @@
-// Wavefront OBJ files: positions, texture coordinates, normals and faces of all groups as one mesh; materials
-// are ignored.
+// This file reads Wavefront OBJ files: positions, texture coordinates, normals and faces of all groups become
+// one mesh; materials are ignored.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// A number that varies over a surface: from + (to - from) * s, s in [0, 1] from a picture or a pattern at the
-// texture coordinates (u, v).
+// A parameter field is a number that varies over a surface: from + (to - from) * s, with s in [0, 1] from a
+// picture or a pattern at the texture coordinates (u, v).
 #pragma once
 
 #include <memory>
@@ -11,9 +11,12 @@
 namespace sunbeam {
 
 struct ParameterField {
-  // constant  s = 0, and `from` is the value. ramp  s = x, held at 0 and 1. bands  s = (1 - cos 2 pi x) / 2,
-  // a full band where x grows by 1. Both with x = along.x u + along.y v. map  s = the map, repeated along.x
-  // times along u and along.y times along v, filtered as HeightMap says, held at 0 and 1.
+  // Says how s follows from (u, v), with x = along.x u + along.y v for ramp and bands.
+  //   constant  s = 0, and `from` is the value.
+  //   ramp      s = x, held at 0 and 1.
+  //   bands     s = (1 - cos 2 pi x) / 2, a full band where x grows by 1.
+  //   map       s is the map, repeated along.x times along u and along.y times along v, filtered as HeightMap
+  //             says, held at 0 and 1.
   enum class Kind { constant, ramp, bands, map };
 
   Kind kind = Kind::constant;
@@ -24,13 +27,14 @@ struct ParameterField {
   static ParameterField of(double value) { return {.from = value, .to = value, .along = {}, .map = {}}; }
   bool is_constant() const { return kind == Kind::constant; }
   double at(const Point2& uv) const;
-  // The lowest and the highest value it can take.
+  // Returns the lowest and the highest value it can take.
   std::pair<double, double> bounds() const;
 };
 
-// Smooth noise that repeats in both directions, for ParameterField::map: `octaves` layers of values on a grid
-// of `cells`, 2 cells, 4 cells ... across, each half as strong as the one before, stretched to [0, 1]. cells
-// and octaves >= 1, cells << octaves at most 512. Depends on `seed` alone.
+// Returns smooth noise that repeats in both directions, for ParameterField::map: `octaves` layers of values
+// on a grid of `cells`, 2 cells, 4 cells ... across, each half as strong as the one before, stretched to [0,
+// 1]. cells and octaves are >= 1, and cells << octaves is at most 512. What is random in it depends on `seed`
+// alone.
 HeightMap noise_map(int cells, int octaves, std::uint64_t seed);
 
 }  // namespace sunbeam

@@ -1,4 +1,5 @@
-// The path integrator: light sampling and BSDF sampling at every vertex, combined by the power heuristic.
+// This file is the path integrator: it samples lights and BSDFs at every vertex and combines both by the
+// power heuristic.
 //
 // Surfaces are two-sided: at each hit the normals are flipped towards the viewer, so a BSDF always sees wo
 // above the surface. Its local x axis is the direction of increasing u (turned by the material's
@@ -31,8 +32,8 @@ class PathTracer {
   PathTracer(const Scene& scene, const EmbreeScene& geometry, const Lights& lights,
              std::span<const SurfaceBsdf> bsdfs);
 
-  // One estimate of the radiance that arrives along `ray`; not finite if a BSDF returned something not
-  // finite. `first` is filled in unless it is null.
+  // Returns one estimate of the radiance that arrives along `ray`; it is not finite if a BSDF returned
+  // something not finite. `first` is filled in unless it is null.
   Rgb radiance(Ray ray, Rng& rng, PathCounts& counts, FirstHit* first) const;
 
  private:

@@ -1,5 +1,5 @@
-// What is known of a picture while its samples come in: mean and spread of every pixel, and means of what its
-// camera rays met first.
+// This file holds what is known of a picture while its samples come in: mean and spread of every pixel, and
+// means of what its camera rays met first.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace sunbeam {
 
-// What a camera ray met first. Directions are in world space, on the viewer's side.
+// Says what a camera ray met first. Directions are in world space, on the viewer's side.
 struct FirstHit {
   bool on_surface = false;  // a light or nothing otherwise, and all below is 0
   Rgb albedo;  // throughput of the BSDF sample: its mean is the directional albedo, mirror included
@@ -18,12 +18,12 @@ struct FirstHit {
   double film_thickness_nm = 0;
 };
 
-// Mean and spread of the samples of one pixel (Welford 1962: no cancellation). The result depends on the
-// order of the samples alone, not on where a render paused between them.
+// Keeps mean and spread of the samples of one pixel (Welford 1962: no cancellation). The result depends on
+// the order of the samples alone, not on where a render paused between them.
 class PixelSums {
  public:
   PixelSums() = default;
-  // As if `count` samples of this mean had come in, `variance_of_mean` estimated from them.
+  // Starts as if `count` samples of this mean had come in, `variance_of_mean` estimated from them.
   PixelSums(std::uint32_t count, const Rgb& mean, const Rgb& variance_of_mean)
       : count_(count), mean_(mean), squares_(variance_of_mean * (count * (count - 1.0))) {}
 

@@ -1,4 +1,4 @@
-// A half-line in world space (z up, scene length units).
+// A ray is a half-line in world space (z up, scene length units).
 #pragma once
 
 #include "sunbeam/core/vec.h"

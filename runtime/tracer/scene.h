@@ -1,5 +1,6 @@
-// A scene, read from TOML and complete in memory: meshes are tessellated and pictures loaded. World space has
-// z up; lengths are in one arbitrary unit. Whoever builds a Scene by hand must keep to the same limits.
+// This file holds a scene, read from TOML and complete in memory: meshes are tessellated and pictures loaded.
+// World space has z up; lengths are in one arbitrary unit. Whoever builds a Scene by hand must keep to the
+// same limits.
 #pragma once
 
 #include <algorithm>
@@ -24,13 +25,13 @@ struct CameraView {
   Vec3 up{0, 0, 1};     // not parallel to the view
   double fov_deg = 40;  // angle of view, (0, 180)
   enum class FovAxis { vertical, horizontal } fov_axis = FovAxis::vertical;
-  // A thin lens: points at `focus_distance` along the view are sharp. Radius 0 is a pinhole.
+  // The lens is thin: points at `focus_distance` along the view are sharp. Radius 0 is a pinhole.
   double lens_radius = 0;
   double focus_distance = 1;
   bool inside = false;  // a position inside a closed object is wanted, not a mistake
 };
 
-// What RenderSettings falls back to.
+// Holds what RenderSettings falls back to.
 struct RenderDefaults {
   int width = 640, height = 360;
   int spp = 64;            // samples per pixel
@@ -38,20 +39,22 @@ struct RenderDefaults {
   int roulette_after = 3;  // scattering events before Russian roulette; max_bounces or more: never
 };
 
-// Radiance from infinity. `map` is a lat-long picture seen from inside, unmirrored: rows run from +z (top) to
-// -z (bottom), the centre column looks along +x, the left quarter along +y. Texels are constant, not blended.
+// Describes the radiance from infinity. `map` is a lat-long picture seen from inside, unmirrored: rows run
+// from +z (top) to -z (bottom), the centre column looks along +x, the left quarter along +y. Texels are
+// constant, not blended.
 struct EnvironmentSource {
   Rgb color;  // used if `map` is empty
   Image map;  // finite, >= 0, scale applied
 };
 
-// A parallelogram that emits on the side of cross(edge_u, edge_v) only; the other side is black and opaque.
+// A quad light is a parallelogram that emits on the side of cross(edge_u, edge_v) only; the other side is
+// black and opaque.
 struct QuadLight {
   Vec3 corner, edge_u, edge_v;
   Rgb radiance;
 };
 
-// Emits outwards, the same radiance everywhere.
+// A sphere light emits outwards, the same radiance everywhere.
 struct SphereLight {
   Vec3 center;
   double radius = 1;
@@ -63,7 +66,8 @@ struct PointLight {
   Rgb intensity;  // W/sr
 };
 
-// The sun: far off, a disc of uniform radiance that is seen in the sky; without size it cannot be seen.
+// A directional light is the sun: far off, a disc of uniform radiance that is seen in the sky; without size
+// it cannot be seen.
 struct DirectionalLight {
   Vec3 towards;          // unit, from the scene to the light
   Rgb irradiance;        // at normal incidence
@@ -76,19 +80,19 @@ struct SceneMaterial {
   Type type = Type::diffuse;
   Rgb albedo{0.5};                      // type diffuse only
   double ior = 1.33, roughness = 0.05;  // type gloss only: a dielectric over black, roughness its GGX alpha
-  // Type skin only: what replaces the value of the recipe.
+  // Only type skin has these, which replace the values of the recipe.
   std::array<std::optional<ParameterField>, 3> parameters;  // in the order of kParameterNames
   // Turns the local x axis of the BSDF away from the direction of increasing u, counter-clockwise about the
   // shading normal on the outer side of the surface (that of its winding).
   double tangent_rotation_deg = 0;
   std::optional<Relief> relief;  // bump map
 
-  // Whether a parameter depends on the texture coordinates.
+  // Says whether a parameter depends on the texture coordinates.
   bool varies() const {
     return std::any_of(parameters.begin(), parameters.end(),
                        [](const auto& field) { return field && !field->is_constant(); });
   }
-  // 0 where no field is given.
+  // Returns the parameters at these texture coordinates; 0 where no field is given.
   Parameters parameters_at(const Point2& uv) const {
     const auto value = [&](std::size_t k) { return parameters[k] ? parameters[k]->at(uv) : 0; };
     return {value(0), value(1), value(2)};
@@ -120,10 +124,10 @@ struct Scene {
   std::vector<std::string> warnings;  // a line each, for people: what was left out of files
 };
 
-// Throws Error for anything missing, out of range, unknown or degenerate, in the file or in what it names.
-// `recipe` and `table` are resolved but not opened.
+// Reads a scene. Throws Error for anything missing, out of range, unknown or degenerate, in the file or in
+// what it names. `recipe` and `table` are resolved but not opened.
 Scene read_scene(const ConfigTable& config);
-// `overrides` as in ConfigTable::load.
+// Reads a scene from a file; `overrides` are those of ConfigTable::load.
 Scene load_scene(const std::string& path, const std::vector<std::string>& overrides = {});
 
 }  // namespace sunbeam

@@ -1,6 +1,7 @@
-// Daylight: a clear sky as an environment map, and the sun that belongs to it. A. J. Preetham, P. Shirley,
-// B. Smits, "A Practical Analytic Model for Daylight", SIGGRAPH 1999: luminance and chromaticity of the sky
-// by Perez's formula (section 3.1 and appendix A.2), sunlight through the atmosphere (appendix A.1).
+// This file makes daylight: a clear sky as an environment map, and the sun that belongs to it. It follows A.
+// J. Preetham, P. Shirley, B. Smits, "A Practical Analytic Model for Daylight", SIGGRAPH 1999: luminance and
+// chromaticity of the sky by Perez's formula (section 3.1 and appendix A.2), sunlight through the atmosphere
+// (appendix A.1).
 //
 // Colours are linear Rec.709 whose luminance (Y) is the photometric one, in units of 1000 cd/m^2 for radiance
 // and 1000 lux for irradiance, times `scale`. A clear sky has 2 to 30, the sun at noon 10^6 and 10^2.
@@ -18,7 +19,7 @@ struct Sky {
   double scale = 1;             // > 0
 };
 
-// The sun's disc, of one radiance all over.
+// Describes the sun's disc, of one radiance all over.
 struct SunLight {
   Vec3 direction;         // unit, towards its centre
   double angular_radius;  // radians; the disc is 0.53 degrees across
@@ -29,11 +30,11 @@ struct SunLight {
 // All throw Error for what Sky does not allow. Negative components, of chromaticities outside Rec.709, are
 // raised to 0.
 
-// Radiance of the sky, without the sun's disc, from the unit direction `w`, w.z >= 0.
+// Returns the radiance of the sky, without the sun's disc, from the unit direction `w`, w.z >= 0.
 Rgb sky_radiance(const Sky& sky, const Vec3& w);
 
-// As EnvironmentSource::map has it: each texel the radiance at its centre, without the sun's disc; below the
-// horizon the ground under sky and sun. width, height >= 1.
+// Returns a map as EnvironmentSource::map has it. Each texel is the radiance at its centre, without the sun's
+// disc; below the horizon it is the ground under sky and sun. width, height >= 1.
 Image sky_map(const Sky& sky, int width, int height);
 
 SunLight sun_light(const Sky& sky);

@@ -1,4 +1,5 @@
-// The BSDF of a material at a hit: one for the whole surface, or one made from parameters that vary over it.
+// This file gives the BSDF of a material at a hit: one for the whole surface, or one made from parameters
+// that vary over it.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +12,7 @@
 
 namespace sunbeam {
 
-// Room for one BSDF made at a hit, so that a small one need not be allocated.
+// Has room for one BSDF made at a hit, so that a small one need not be allocated.
 class BsdfRoom {
  public:
   BsdfRoom() = default;
@@ -22,7 +23,7 @@ class BsdfRoom {
   BsdfRoom(const BsdfRoom&) = delete;
   BsdfRoom& operator=(const BsdfRoom&) = delete;
 
-  // Once for each room.
+  // Makes a BSDF in the room; it may be called once for each room.
   template <class T, class... Args>
   const Bsdf& emplace(Args&&... args) {
     static_assert(sizeof(T) <= kSize && alignof(T) <= kAlignment);
@@ -30,7 +31,7 @@ class BsdfRoom {
     return *bsdf_;
   }
 
-  // Instead of emplace().
+  // Takes a BSDF over, instead of emplace().
   const Bsdf& adopt(std::unique_ptr<const Bsdf> bsdf) {
     large_ = bsdf.release();
     return *large_;
@@ -47,12 +48,12 @@ class VaryingBsdf {
  public:
   virtual ~VaryingBsdf() = default;
 
-  // The BSDF for these parameters, in `room` or shared; lives no longer than both. Used by many threads at
-  // once.
+  // Returns the BSDF for these parameters, in `room` or shared; it lives no longer than both. Many threads
+  // call it at once.
   virtual const Bsdf& at(const Parameters& parameters, BsdfRoom& room) const = 0;
 };
 
-// Exactly one of the two; owned elsewhere.
+// Holds exactly one of the two; they are owned elsewhere.
 struct SurfaceBsdf {
   SurfaceBsdf(const Bsdf* uniform_bsdf) : uniform(uniform_bsdf) {}
   SurfaceBsdf(const VaryingBsdf* varying_bsdf) : varying(varying_bsdf) {}

@@ -1,9 +1,9 @@
-// A baked material: BRDF data over (film thickness, base IOR, absorption) and two directions.
+// A table is a baked material: BRDF data over (film thickness, base IOR, absorption) and two directions.
 //
-// There are two encodings. Factored: see factors.h. Dense, for every material, below: what is exactly known
-// stays in closed form and only the remainder is tabulated; with c_i, c_o the cosines of the directions, m_i,
-// m_o the cosines below the film, tau the optical depth, tau_s the scattering depth, s = (n0/n2)^2 or 1 and
-// kd albedo:
+// There are two encodings. The factored one is described in factors.h. The dense one serves every material
+// and is described below: what is exactly known stays in closed form and only the remainder is tabulated.
+// With c_i, c_o the cosines of the directions, m_i, m_o the cosines below the film, tau the optical depth,
+// tau_s the scattering depth, s = (n0/n2)^2 or 1 and kd albedo:
 //
 //   f     = first + rest
 //   first = D(h) G2(wi, wo) R(wi.h) / (4 c_i c_o)            (smooth film: a Dirac of weight R(c_i) instead)
@@ -47,14 +47,14 @@ namespace sunbeam::inline v1 {
 
 inline constexpr int kTableSchemaVersion = 2;
 
-// What the array `remainder` of a dense table stands in: see above.
+// Says what the array `remainder` of a dense table stands in: see above.
 enum class FrameKind { closed, none };
 
 constexpr const char* name_of(FrameKind frame) { return frame == FrameKind::closed ? "closed" : "none"; }
 
 class TableBsdf;
 
-// What becomes of parameters beyond those of the table.
+// Says what becomes of parameters beyond those of the table.
 enum class OutsideGrid { clamp, refuse };
 
 struct Table {
@@ -65,30 +65,32 @@ struct Table {
 
   FrameKind frame = FrameKind::closed;
 
-  // Axes (film_thickness_nm, base_ior, cos_theta); finer than the grid, as fringes need it.
+  // Their axes are (film_thickness_nm, base_ior, cos_theta); they are finer than the grid, as fringes need
+  // it.
   NdArray film_reflectance;
   NdArray film_transmittance;  // empty for a smooth film, and without a frame
 
-  // Spectrum "full" with a frame only, else empty. Axis optical_path: the base under its pigment without the
-  // film, times pi, folded over the wavelengths: F(x) = fold(kd exp(-a x)), a = absorption relative to the
-  // one at 510 nm.
+  // Only spectrum "full" with a frame has it, else it is empty. Over the axis optical_path it holds the base
+  // under its pigment without the film, times pi, folded over the wavelengths: F(x) = fold(kd exp(-a x)), a =
+  // absorption relative to the one at 510 nm.
   NdArray first_visit;
 
-  // Axes (film_thickness_nm, base_ior, absorption_per_nm, cos_theta_i, phi_i, cos_theta_o, phi_o); a
+  // Its axes are (film_thickness_nm, base_ior, absorption_per_nm, cos_theta_i, phi_i, cos_theta_o, phi_o); a
   // parameter that is not in the grid has one node.
   NdArray remainder;
-  // Standard error of rest, 1/sr, same axes: one number a cell, the mean over channels, to three binary
-  // digits.
+  // This is the standard error of the rest, 1/sr, over the same axes: one number a cell, the mean over
+  // channels, to three binary digits.
   NdArray rest_stderr;
 
-  // Provenance and measured error as text: recipe, recipe_hash, seed, samples, estimator, spectrum,
+  // Holds provenance and measured error as text: recipe, recipe_hash, seed, samples, estimator, spectrum,
   // tool_version, encoding, error.<name>; with spectrum "full" also color_space, illuminant, wavelengths.
   std::map<std::string, std::string> info;
 
-  // True if colours are spectra folded into color_space(), where components may be negative; else R, G, B are
-  // three wavelengths (spectrum "rgb3").
+  // Returns true if colours are spectra folded into color_space(), where components may be negative; else R,
+  // G, B are three wavelengths (spectrum "rgb3").
   bool is_full_spectrum() const;
-  // Of all colours in the table, the albedo included. The three wavelengths of rgb3 are taken as rec709.
+  // Returns the space of all colours in the table, the albedo included. The three wavelengths of rgb3 are
+  // taken as rec709.
   ColorSpace color_space() const;
 
   bool is_factored() const { return !factors.empty(); }
@@ -97,14 +99,14 @@ struct Table {
     return is_factored() ? factors.grid[k] : remainder.axes()[k];
   }
 
-  // The material at fixed parameters, for which look-ups are prepared (table_bsdf.h). Textured ones:
-  // textured_table.h. Throws Error naming the key if parameters are refused.
+  // Returns the material at fixed parameters, for which look-ups are prepared (table_bsdf.h). Textured
+  // parameters are the matter of textured_table.h. Throws Error naming the key if parameters are refused.
   TableBsdf bind(const Parameters& parameters, OutsideGrid outside = OutsideGrid::refuse) const;
 
-  // T at a node or between: see above. `x` = (film_thickness_nm, base_ior, cos_theta).
+  // Returns T (see above) at a node or between; `x` = (film_thickness_nm, base_ior, cos_theta).
   Rgb transmittance(const std::array<double, 3>& x) const;
 
-  // The arrays that it has, by name: the order of its file.
+  // Returns the arrays that it has, by name, which is the order of its file.
   std::vector<const NdArray*> arrays() const;
 
   bool operator==(const Table& other) const;

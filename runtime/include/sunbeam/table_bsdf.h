@@ -1,5 +1,6 @@
-// A table bound to one parameter point: the fast BSDF that renderers embed. Deterministic; const calls
-// allocate nothing, throw nothing, lock nothing, and may run on any number of threads. Copies share the data.
+// A TableBsdf is a table bound to one parameter point: the fast BSDF that renderers embed. It is
+// deterministic. Const calls allocate nothing, throw nothing, lock nothing, and may run on any number of
+// threads. Copies share the data.
 //
 // eval = first + rest of table.h, 1/sr, without the cosine and without the Dirac part.
 // sample mixes two techniques, chosen by their directional albedos: visible normals for the first surface
@@ -33,23 +34,24 @@ class TableBsdf final : public Bsdf {
   double mis_pdf(const Vec3& wo, const Vec3& wi) const override { return eval_pdf(wo, wi).pdf; }
   bool is_isotropic() const override { return material().roughness.is_isotropic(); }
 
-  // Both at once, at the price of one.
+  // Returns value and density at once, at the price of one.
   EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi) const;
   EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return eval_pdf(wo, wi); }
 
   EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const override;
 
-  // f of one viewer and many lights at a lower price each; f[k] belongs to wi[k], and there are as many.
+  // Writes f of one viewer and many lights at a lower price each; f[k] belongs to wi[k], and there are as
+  // many.
   void eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f) const;
 
   Rgb first(const Vec3& wo, const Vec3& wi) const;
   Rgb rest(const Vec3& wo, const Vec3& wi) const;
   Rgb rest_stderr(const Vec3& wo, const Vec3& wi) const;
   Rgb film_reflectance(double cosine) const;
-  // Weight of the mirror direction; 0 for a rough film.
+  // Returns the weight of the mirror direction; 0 for a rough film.
   Rgb dirac(const Vec3& wo) const;
 
-  // Directional-hemispherical reflectance by quadrature, Dirac included.
+  // Returns the directional-hemispherical reflectance by quadrature, Dirac included.
   Rgb albedo(const Vec3& wo) const;
 
  private:

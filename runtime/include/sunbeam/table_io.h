@@ -1,5 +1,6 @@
-// Table files. Two forms hold the same content without loss: `.exr` (multi-part OpenEXR, here) and `.vdb`
-// (OpenVDB grids, in table_vdb.h, an optional target). docs/reference/table_format.md draws both layouts.
+// This file reads and writes tables. Two forms of file hold the same content without loss: `.exr` (multi-part
+// OpenEXR, here) and `.vdb` (OpenVDB grids, in table_vdb.h, an optional target).
+// docs/reference/table_format.md draws both layouts.
 //
 // Every function throws Error naming the file and what is wrong; writing is atomic.
 #pragma once
@@ -15,7 +16,7 @@ namespace sunbeam::inline v1 {
 Table load_table_exr(const std::string& path);
 Table parse_table_exr(std::string_view bytes, const std::string& name);  // from memory; `name` for messages
 std::string table_exr_bytes(const TableView& table);  // the same table gives the same bytes
-// A table that is not in memory is written a few nodes at a time.
+// Writes a table; one that is not in memory is written a few nodes at a time.
 void save_table_exr(const TableView& table, const std::string& path);
 
 }  // namespace sunbeam::inline v1

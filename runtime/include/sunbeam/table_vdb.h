@@ -1,4 +1,4 @@
-// Table files in OpenVDB form; see table_io.h. Link sunbeam::table_vdb.
+// This file reads and writes tables in OpenVDB form; see table_io.h. Link sunbeam::table_vdb.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ Table parse_table_vdb(std::string_view bytes, const std::string& name);
 std::string table_vdb_bytes(const Table& table);
 void save_table_vdb(const Table& table, const std::string& path);
 
-// Either form, by the extension of the path.
+// These take either form, by the extension of the path.
 Table load_table(const std::string& path);
 void save_table(const TableView& table, const std::string& path);
 std::string table_bytes(const Table& table, const std::string& path);

@@ -1,14 +1,15 @@
-// A table whose parameters change at every hit: film thickness, base IOR and absorption come from textures.
-// Made once from a loaded table, in a fraction of a second; at() then only finds its place in the grid.
+// A TexturedTable is a table whose parameters change at every hit: film thickness, base IOR and absorption
+// come from textures. It is made once from a loaded table, in a fraction of a second; at() then only finds
+// its place in the grid.
 //
-// Of every table. Both parts of f = first + rest are those of table.h and TableBsdf.
+// In every table both parts of f = first + rest are those of table.h and TableBsdf.
 //
-// Dense: the table's own arrays, interpolated at the parameters and directions as bind() would; what differs
+// A dense table's own arrays are interpolated at the parameters and directions as bind() would; what differs
 // is rounding.
 //
-// Factored (factors.h): the first surface is in closed form, with the film's reflectance folded at the half
-// angle by FilmSpectrum. The rest is at each wavelength g A(wi) A(wo), times a bracket V(wi, wo) with path
-// "product". The folded sum is taken as a product of the same form,
+// Of a factored table (factors.h) the first surface is in closed form, with the film's reflectance folded at
+// the half angle by FilmSpectrum. The rest is at each wavelength g A(wi) A(wo), times a bracket V(wi, wo)
+// with path "product". The folded sum is taken as a product of the same form,
 //
 //   rest = B(wi) B(wo) [1 with path "sum", V1 + X with "product"],
 //   B(w) = fold(g A* A(w)) / sqrt(fold(g A* A*)),   A* = Int A(w) cos dw,
@@ -61,7 +62,7 @@ class TexturedTable {
   // Takes what it needs of `table`, which need not outlive it.
   explicit TexturedTable(const Table& table, Arithmetic arithmetic = Arithmetic::fastest);
 
-  // The BSDF at one parameter point; lives no longer than its table.
+  // At is the BSDF at one parameter point; it lives no longer than its table.
   class At final : public Bsdf {
    public:
     Rgb eval(const Vec3& wo, const Vec3& wi, Rng&) const override { return eval_pdf(wo, wi).f; }
@@ -69,16 +70,16 @@ class TexturedTable {
     double pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return mis_pdf(wo, wi); }
     double mis_pdf(const Vec3& wo, const Vec3& wi) const override { return eval_pdf(wo, wi).pdf; }
 
-    // Both at once, at the price of one.
+    // Returns value and density at once, at the price of one.
     EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi) const;
     EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return eval_pdf(wo, wi); }
 
     EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const override;
 
     const Parameters& parameters() const { return parameters_; }
-    // Weight of the mirror direction; 0 for a rough film.
+    // Returns the weight of the mirror direction; 0 for a rough film.
     Rgb dirac(const Vec3& wo) const;
-    // Estimate of the directional-hemispherical reflectance, mean over channels, Dirac included.
+    // Estimates the directional-hemispherical reflectance, mean over channels, Dirac included.
     double albedo(const Vec3& wo) const;
 
    private:
@@ -99,9 +100,9 @@ class TexturedTable {
     PowerDensity rest_density_;
   };
 
-  // Outside the grid parameters are clamped to it.
+  // Returns the BSDF at these parameters. Outside the grid they are clamped to it.
   At at(const Parameters& parameters) const noexcept;
-  // Or Error is thrown.
+  // Does the same, but throws Error outside the grid if `outside` says so.
   At at(const Parameters& parameters, OutsideGrid outside) const;
 
   std::size_t bytes() const;

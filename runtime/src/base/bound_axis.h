@@ -1,6 +1,6 @@
-// An axis as look-ups want it: the nodes that a value lies between found without a search, and their weights
-// from differences and factors known beforehand. Weights are those of Axis::stencil in single floats; places
-// are in doubles, for a float of an azimuth is off by 2e-7 of a radian.
+// This is an axis as look-ups want it: the nodes that a value lies between are found without a search, and
+// their weights come from differences and factors known beforehand. Weights are those of Axis::stencil in
+// single floats; places are in doubles, for a float of an azimuth is off by 2e-7 of a radian.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ class BoundAxis {
   };
 
   BoundAxis() = default;
-  // Offsets are node numbers times `stride`.
+  // Prepares an axis. Offsets are node numbers times `stride`.
   BoundAxis(const Axis& axis, std::size_t stride);
 
   Taps at(double x) const {
@@ -52,7 +52,7 @@ class BoundAxis {
  private:
   static constexpr int kGuideCells = 64;
 
-  // Between two neighbours, with all nodes that values there are made of.
+  // Describes the interval between two neighbours, with all nodes that values there are made of.
   struct Interval {
     double begin = 0;                         // coordinate
     std::array<int, 4> offset{};              // of the nodes,

@@ -1,4 +1,4 @@
-// Colours as look-ups carry them: four floats in a register, the last without meaning.
+// This file holds colours as look-ups carry them: four floats in a register, the last without meaning.
 #pragma once
 
 #include "runtime/src/base/lanes.h"
@@ -34,14 +34,14 @@ inline Color4 sqrt4(const Color4& x) {
   square_root(x, root);
   return root;
 }
-// The lesser and the greater of two numbers, four times; `b` where `a` is not a number.
+// These return the lesser and the greater of two numbers, four times; `b` where `a` is not a number.
 inline Color4 min4(const Color4& a, const Color4& b) { return select(a < b, a, b); }
 inline Color4 max4(const Color4& a, const Color4& b) { return select(a > b, a, b); }
 
 #endif
 
-// Four of them, from coordinates >= 0 that count nodes; none goes beyond its `last`, whose place is the last
-// node with a weight of 0 for one more, which must exist.
+// Finds four EvenPosition at once, from coordinates >= 0 that count nodes. None goes beyond its `last`, whose
+// place is the last node with a weight of 0 for one more, which must exist.
 struct EvenPositions {
   EvenPositions(const Color4& coordinates, const Color4& last) {
     const Color4 inside = min4(coordinates, last);
@@ -52,7 +52,7 @@ struct EvenPositions {
   Color4 upper_weight;
 };
 
-// Where x in [0, 1] lies among nodes spread evenly over it.
+// Says where x in [0, 1] lies among nodes spread evenly over it.
 struct EvenPosition {
   EvenPosition(float x, int nodes) {
     const float position = x * static_cast<float>(nodes - 1);

@@ -1,4 +1,5 @@
-// What compilers say in their own words. Elsewhere, and with SUNBEAM_PORTABLE, the words vanish.
+// This file names what compilers say in their own words. Elsewhere, and with SUNBEAM_PORTABLE, the words
+// vanish.
 #pragma once
 
 namespace sunbeam::inline v1 {

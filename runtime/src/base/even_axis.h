@@ -1,4 +1,5 @@
-// A parameter of a table on nodes that are even in a coordinate, so that a value is located without a search.
+// This file puts a parameter of a table on nodes that are even in a coordinate, so that a value is located
+// without a search.
 #pragma once
 
 #include "runtime/src/base/color4.h"
@@ -8,7 +9,8 @@ namespace sunbeam::inline v1 {
 
 class EvenAxis {
  public:
-  // Over the range of `axis`; in the root of what is beyond its origin where the axis bends (power > 1).
+  // Spreads `nodes` over the range of `axis`; where the axis bends (power > 1) they are even in the root of
+  // what is beyond its origin.
   EvenAxis(const Axis& axis, int nodes)
       : low_(axis.low()), high_(axis.high()), origin_(axis.origin), is_root_(axis.power > 1), nodes_(nodes) {
     first_ = coordinate(low_);
@@ -23,9 +25,9 @@ class EvenAxis {
     const double u = first_ + extent_ * k / (nodes_ - 1);
     return clamped(is_root_ ? origin_ + u * u : u);
   }
-  // What is not a number counts as high.
+  // Clamps x to the axis; what is not a number counts as high.
   double clamped(double x) const { return std::max(low_, std::min(high_, x)); }
-  // Of x in [low, high].
+  // Returns the place of x in [low, high].
   EvenPosition locate(double x) const {
     return EvenPosition(static_cast<float>((coordinate(x) - first_) * per_extent_), nodes_);
   }

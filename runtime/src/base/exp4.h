@@ -1,11 +1,12 @@
-// exp of four floats at once.
+// This file computes exp of four floats at once.
 #pragma once
 
 #include "runtime/src/base/color4.h"
 
 namespace sunbeam::inline v1 {
 
-// Relative error 3e-7; arguments are kept within [-87, 87], so the result is a normal number.
+// Returns exp with a relative error of 3e-7. Arguments are kept within [-87, 87], so the result is a normal
+// number.
 inline Color4 exp4(const Color4& x) {
   constexpr float kMost = 87, kPerLog2 = 1.44269504f;
   constexpr float kLog2High = 0.693145752f, kLog2Low = 1.42860677e-6f;  // their sum is log 2

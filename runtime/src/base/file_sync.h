@@ -1,11 +1,11 @@
-// What standard C++ cannot do to a file.
+// This file does what standard C++ cannot do to a file.
 #pragma once
 
 #include <string>
 
 namespace sunbeam::inline v1 {
 
-// Returns when the closed file at `path` is on the disk, false with errno if it cannot be. With
+// Returns when the closed file at `path` is on the disk: true, or false with errno if it cannot be. With
 // SUNBEAM_PORTABLE the system writes it when it likes.
 bool sync_to_disk(const std::string& path);
 

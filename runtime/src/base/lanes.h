@@ -1,4 +1,4 @@
-// Several numbers that are computed with at once, a lane each: vectors of GCC's kind, or with
+// This file computes with several numbers at once, a lane each. They are vectors of GCC's kind, or with
 // SUNBEAM_PORTABLE arrays of plain C++, which give the same bits. Operators work lane by lane and take a
 // number for all lanes; comparisons give integers, -1 where they hold and 0 elsewhere.
 #pragma once
@@ -32,7 +32,7 @@ struct Lanes {
   T& operator[](std::size_t k) { return lane[k]; }
   const T& operator[](std::size_t k) const { return lane[k]; }
 
-  // What f makes of each lane of a and b.
+  // Returns what f makes of each lane of a and b.
   template <class Result = Lanes, class F>
   static Result each(const Lanes& a, const Lanes& b, F f) {
     Result result;
@@ -77,7 +77,7 @@ using Doubles2 = Lanes<double, 2>;
 using Doubles4 = Lanes<double, 4>;
 using Ints4 = Lanes<int, 4>;
 
-// Lanes of a where the mask holds, of b elsewhere.
+// Takes the lanes of a where the mask holds, of b elsewhere.
 template <class V>
 V select(const typename V::Mask& mask, const V& a, const V& b) {
   V result;
@@ -85,7 +85,7 @@ V select(const typename V::Mask& mask, const V& a, const V& b) {
   return result;
 }
 
-// The same numbers in another type; integers are cut off towards 0.
+// Returns the same numbers in another type; integers are cut off towards 0.
 template <class To, class T, int kCount>
 To convert(const Lanes<T, kCount>& from) {
   To result;
@@ -94,13 +94,13 @@ To convert(const Lanes<T, kCount>& from) {
   return result;
 }
 
-// The same bits in another type.
+// Returns the same bits in another type.
 template <class To, class From>
 To bits_as(const From& from) {
   return std::bit_cast<To>(from);
 }
 
-// Lanes of a and b, numbered one after the other.
+// Picks lanes of a and b, numbered one after the other.
 template <int... kLane, class T, int kCount>
 Lanes<T, sizeof...(kLane)> shuffle(const Lanes<T, kCount>& a, const Lanes<T, kCount>& b) {
   return {(kLane < kCount ? a[kLane % kCount] : b[kLane % kCount])...};

@@ -1,4 +1,4 @@
-// The hot part of FilmSpectrum, compiled for each instruction set.
+// This file gives access to the hot part of FilmSpectrum, which is compiled for each instruction set.
 #pragma once
 
 #include <cstddef>
@@ -21,14 +21,14 @@ struct FilmKernels {
                          float* transmittance);
 };
 
-// What every machine of this kind of processor has (x86-64: SSE2; ARM: NEON).
+// These need only what every processor of this kind has (x86-64: SSE2; ARM: NEON).
 extern const FilmKernels kBaselineFilmKernels;
 #ifdef SUNBEAM_X86_FILM_KERNELS
 extern const FilmKernels kAvx2FilmKernels;
 extern const FilmKernels kAvx512FilmKernels;
 #endif
 
-// Those that this machine runs, the fastest last.
+// Returns those that this processor runs, the fastest last.
 std::span<const FilmKernels* const> supported_film_kernels();
 
 }  // namespace sunbeam::inline v1

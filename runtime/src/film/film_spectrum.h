@@ -1,6 +1,6 @@
-// How much a thin film reflects at all wavelengths of a table, folded into RGB: what a renderer pays for a
-// film that it does not look up. Airy's formula for unpolarised light and media that absorb nothing, in
-// single floats with several wavelengths to an instruction.
+// This file computes how much a thin film reflects at all wavelengths of a table, folded into RGB: what a
+// renderer pays for a film that it does not look up. It evaluates Airy's formula for unpolarised light and
+// media that absorb nothing, in single floats with several wavelengths to an instruction.
 //
 // With c_j the cosine in medium j, beta = n0 sin(theta_0), m_j = (n_j c_j)^2 = n_j^2 - beta^2, the phase
 // x_k = 2 pi d sqrt(m_1) / lambda_k and S = sin^2(x_k),
@@ -28,7 +28,8 @@ struct FloatRgb {
   float r = 0, g = 0, b = 0;
 };
 
-// A list for each quantity; beyond the last wavelength up to `padded` the last is repeated with no weight.
+// Holds a list for each quantity; beyond the last wavelength up to `padded` the last is repeated with no
+// weight.
 struct FilmWavelengths {
   static constexpr std::size_t kPadding = 16;
 
@@ -47,20 +48,21 @@ struct FilmKernels;  // compiled for one instruction set, see film_kernels.h
 // SUNBEAM_KERNELS ask for them.
 const FilmKernels& film_kernels(Arithmetic arithmetic);
 
-// A film of index n1 under an exterior of index n0. Constant after construction: threads may share it.
+// Evaluates a film of index n1 under an exterior of index n0. It is constant after construction, so threads
+// may share it.
 class FilmSpectrum {
  public:
-  // 1 to kMostWavelengths of them, else Error; indices >= 1.
+  // Takes 1 to kMostWavelengths wavelengths, else it throws Error; indices >= 1.
   FilmSpectrum(const Wavelengths& wavelengths, double exterior_ior, double film_ior,
                const FilmKernels& kernels = film_kernels(Arithmetic::fastest));
 
-  // rgb[i] = sum_k weight_k R_k(cosines[i]) over a base of index n2; cosines in the exterior, 0 to 1. `rgb`
-  // holds at least as many. Several at once cost less each than one.
+  // Writes rgb[i] = sum_k weight_k R_k(cosines[i]) over a base of index n2; cosines are those in the
+  // exterior, 0 to 1. `rgb` holds at least as many. Several at once cost less each than one.
   void fold(double thickness_nm, double base_ior, std::span<const float> cosines,
             FloatRgb* rgb) const noexcept;
 
-  // T_k = 1 - R_k of each wavelength, with relative precision. Writes padded_count() values; those from
-  // count() on mean nothing.
+  // Writes T_k = 1 - R_k of each wavelength, with relative precision. There are padded_count() values; those
+  // from count() on mean nothing.
   void powers(double thickness_nm, double base_ior, float cosine, float* transmittance) const noexcept;
 
   std::size_t count() const noexcept { return wavelengths_.count; }

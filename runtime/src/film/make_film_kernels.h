@@ -1,5 +1,6 @@
-// Included by one source file for each instruction set. Everything here is local to that file, and no library
-// function is called: the linker must not take a copy from here for machines that cannot run it.
+// This file is included by one source file for each instruction set. Everything here is local to that file,
+// and no library function is called: the linker must not take a copy from here for processors that cannot run
+// it.
 //
 // Four doubles hold four cosines, V as many wavelengths as it has floats.
 #pragma once
@@ -20,9 +21,9 @@ constexpr int kCosines = 4;
 using Cosines = Doubles4;
 using CosineBits = decltype(Cosines{} < Cosines{});
 
-// All that does not depend on the wavelength, for four cosines. Where X < 0 (n1 between n0 and n2), sum + X
-// sin^2 would cancel at grazing. It is then written as (sum + X) - X cos^2, and sum + X as a square: (m_1 +
-// n0 c0 n2 c2)^2 / m_1, (n1^2 c0 c2 + n0 n2 m_1 / n1^2)^2 / m_1.
+// Holds all that does not depend on the wavelength, for four cosines. Where X < 0 (n1 between n0 and n2), sum
+// + X sin^2 would cancel at grazing. It is then written as (sum + X) - X cos^2, and sum + X as a square: (m_1
+// + n0 c0 n2 c2)^2 / m_1, (n1^2 c0 c2 + n0 n2 m_1 / n1^2)^2 / m_1.
 struct FilmAngles {
   float offset;                       // of the phase in turns: 0 for sin^2, 1/2 for cos^2
   Floats4 path, path_high, path_low;  // d sqrt(m_1), nm; the second has 12 bits, the third is the rest
@@ -31,7 +32,7 @@ struct FilmAngles {
   Floats4 half_t;                     // t / 2
 };
 
-// What needs no more than floats. Cosines pass where m2 > 0; the others get t = 0 and D = 1.
+// Prepares what needs no more than floats. Cosines pass where m2 > 0; the others get t = 0 and D = 1.
 inline void prepare_powers(const FilmMedia& media, const Floats4& c0, const Floats4& m1, const Floats4& m2,
                            FilmAngles& angles) {
   const double n0 = media.exterior_ior, n1 = media.film_ior, n2 = media.base_ior;
@@ -62,9 +63,9 @@ inline void prepare_powers(const FilmMedia& media, const Floats4& c0, const Floa
   angles.half_t = 2 * q0 * q2;
 }
 
-// Doubles up to the squared cosines and the path, whose digits cancel or turn many times.
-// A call of its own: inlined, its constants would be spread over registers and spilled for lists that are
-// short.
+// Prepares all angles, in doubles up to the squared cosines and the path, whose digits cancel or turn many
+// times. It is a call of its own: inlined, its constants would be spread over registers and spilled for lists
+// that are short.
 SUNBEAM_NOINLINE void prepare(const FilmMedia& media, const Cosines& c0, FilmAngles& angles) {
   const double n0 = media.exterior_ior, n1 = media.film_ior, n2 = media.base_ior;
   const Cosines q0 = n0 * c0, m0 = q0 * q0, zero = {};
@@ -82,7 +83,7 @@ SUNBEAM_NOINLINE void prepare(const FilmMedia& media, const Cosines& c0, FilmAng
   prepare_powers(media, convert<Floats4>(c0), convert<Floats4>(m1), convert<Floats4>(m2), angles);
 }
 
-// Sums of the lanes that are equal modulo 4.
+// Returns the sums of the lanes that are equal modulo 4.
 template <class V>
 Floats4 quarters(const V& v) {
   if constexpr (sizeof v == sizeof(Floats4))
@@ -93,14 +94,14 @@ Floats4 quarters(const V& v) {
     return quarters(shuffle<0, 1, 2, 3, 4, 5, 6, 7>(v, v) + shuffle<8, 9, 10, 11, 12, 13, 14, 15>(v, v));
 }
 
-// The sums of the lanes of r, g and b; the last lane means nothing.
+// Returns the sums of the lanes of r, g and b; the last lane means nothing.
 inline Floats4 sums(const Floats4& r, const Floats4& g, const Floats4& b) {
   const Floats4 rg = shuffle<0, 4, 1, 5>(r, g) + shuffle<2, 6, 3, 7>(r, g);
   const Floats4 bb = b + shuffle<2, 3, 2, 3>(b, b);
   return shuffle<0, 1, 4, 4>(rg, bb) + shuffle<2, 3, 5, 5>(rg, bb);
 }
 
-// V: as many wavelengths as the instruction set has floats in a vector.
+// Makes the kernels of one instruction set. V holds as many wavelengths as it has floats in a vector.
 template <class V>
 struct FilmFloats {
   static constexpr std::size_t kWidth = sizeof(V) / sizeof(float);
@@ -116,8 +117,8 @@ struct FilmFloats {
     return bits_as<V>(bits_as<Bits>(v) & 0x7fffffff);
   }
 
-  // sin^2 or cos^2(pi u) for the turns u = path per, both in two parts. Only the part of u beyond its nearest
-  // integer matters, and that is exact: the product of the high parts has 24 bits.
+  // Returns sin^2 or cos^2(pi u) for the turns u = path per, both in two parts. Only the part of u beyond its
+  // nearest integer matters, and that is exact: the product of the high parts has 24 bits.
   static V squared_wave(const FilmAngles& angles, int i, const V& per_high, const V& per_low) {
     constexpr float kRound = 0x1.8p23f;  // adding and subtracting it rounds to the nearest integer
     const V high = angles.path_high[i] * per_high;
@@ -132,7 +133,7 @@ struct FilmFloats {
     return sine * sine;
   }
 
-  // T_k / (t / 2) = 1 / D_s + 1 / D_p of kWidth wavelengths at cosine i.
+  // Returns T_k / (t / 2) = 1 / D_s + 1 / D_p of kWidth wavelengths at cosine i.
   static V passing(const FilmAngles& angles, int i, const V& per_high, const V& per_low) {
     const V s = squared_wave(angles, i, per_high, per_low);
     const V d_s = angles.sum_s[i] + angles.x_s[i] * s, d_p = angles.sum_p[i] + angles.x_p[i] * s;

@@ -1,5 +1,5 @@
-// Makes S and Q (runtime/src/rest/separable.h) of the wavelengths of a factored table at one parameter
-// point.
+// This file makes S and Q (runtime/src/rest/separable.h) of the wavelengths of a factored table at one
+// parameter point.
 #pragma once
 
 #include "runtime/src/fit/bound_waves.h"

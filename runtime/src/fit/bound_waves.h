@@ -1,4 +1,5 @@
-// A WaveField at one thickness: A, gain and rest of any direction, a wavelength at a time, in doubles.
+// This is a WaveField at one thickness: it gives A, gain and rest of any direction, a wavelength at a time,
+// in doubles.
 #pragma once
 
 #include <span>
@@ -15,16 +16,16 @@ class BoundWaves {
   // outlive this.
   BoundWaves(const Table& table, const Material& material, const FilmKernels& kernels);
 
-  // What the rest needs to know of one direction.
+  // Holds what the rest needs to know of one direction.
   struct Direction {
     double below = 0;                            // cosine below the film
     std::array<double, kMostWavelengths> share;  // A
     std::vector<DirectionTap> taps;              // in exchange
   };
-  // phi in [0, pi/2]; of no matter for an isotropic film.
+  // Prepares a direction; phi lies in [0, pi/2] and is of no matter for an isotropic film.
   Direction direction(double cosine, double phi) const;
 
-  // The same with exchange contracted, for many others.
+  // Holds the same with exchange contracted, for many others.
   struct Row {
     double below;
     std::array<double, kMostWavelengths> share;
@@ -32,10 +33,10 @@ class BoundWaves {
   };
   Row row(const Direction& i) const;
 
-  // Folded, 1/sr.
+  // Returns the rest, folded, 1/sr.
   Rgb rest(const Row& i, const Direction& o) const;
 
-  // A folded: what of a direction's light reaches the base.
+  // Returns A folded: what of a direction's light reaches the base.
   Rgb arriving(const Direction& w) const {
     return field_.wavelengths().fold(std::span(w.share).first(field_.size()));
   }

@@ -1,5 +1,5 @@
-// Estimates of the directional albedo of a dense table's rest at coarse nodes, from which a textured table
-// chooses between its two techniques of sampling.
+// This file estimates the directional albedo of a dense table's rest at coarse nodes. A textured table
+// chooses by it between its two techniques of sampling.
 #pragma once
 
 #include <array>
@@ -14,10 +14,11 @@ class DenseAlbedos {
  public:
   explicit DenseAlbedos(const Table& table);
 
-  // Limits of a parameter, in the order of kParameterNames.
+  // Returns the axis of a parameter, which has its limits, in the order of kParameterNames.
   const EvenAxis& axis(std::size_t k) const { return axes_[k]; }
 
-  // Mean over channels and over the azimuth of wo; `root` is that of its cosine. Parameters lie in the grid.
+  // Returns the mean over channels and over the azimuth of wo; `root` is that of its cosine. Parameters lie
+  // in the grid.
   float at(const Parameters& at, float root) const;
 
   std::size_t bytes() const { return nodes_.size() * sizeof(float); }

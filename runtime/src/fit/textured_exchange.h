@@ -1,25 +1,25 @@
-// X of a textured table with path "product" (sunbeam/textured_table.h): what is left of the rest over B B,
-// one visit of the base aside, at the nodes of pairs.
+// This file makes X of a textured table with path "product" (sunbeam/textured_table.h): what is left of the
+// rest over B B, one visit of the base aside, at the nodes of pairs.
 #pragma once
 
 #include "runtime/src/fit/textured_factor.h"
 
 namespace sunbeam::inline v1 {
 
-// What it is made of must outlive it.
+// Finds the values of X. What it is made of must outlive it.
 class TexturedExchange {
  public:
   // `exchange` is the table's array at the base IOR of the waves, `factor` theirs and `nodes` its L.
   TexturedExchange(const NdArray& exchange, const TexturedWaves& waves, const TexturedMedia& media,
                    const TexturedFactor& factor, const std::vector<Color4>& nodes);
 
-  // At a node of the thickness: (direction, direction).
+  // Writes X at a node of the thickness, as (direction, direction).
   void find_pairs(int d, Color4* pairs) const;
 
  private:
   static constexpr int kCosines = TexturedGrid::kCosines;
 
-  // A direction of a pair, as nodes of L.
+  // Names a direction of a pair by its nodes of L.
   struct End {
     int c, p;
     std::size_t column() const { return static_cast<std::size_t>(p * kCosines + c); }

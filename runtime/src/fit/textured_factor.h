@@ -1,5 +1,5 @@
-// Folds B of a textured table (sunbeam/textured_table.h) from the shares of all wavelengths at one base IOR
-// and absorption, and makes the nodes of L that stand for it.
+// This file folds B of a textured table (sunbeam/textured_table.h) from the shares of all wavelengths at one
+// base IOR and absorption, and makes the nodes of L that stand for it.
 #pragma once
 
 #include "runtime/src/fit/textured_waves.h"
@@ -7,18 +7,18 @@
 
 namespace sunbeam::inline v1 {
 
-// What it is made of must outlive it.
+// Folds B and finds L. What it is made of must outlive it.
 class TexturedFactor {
  public:
   TexturedFactor(const TexturedWaves& waves, const TexturedMedia& media, bool is_product);
 
-  // L over (path, column); the last lane is the chance of sampling the first surface.
+  // Returns L over (path, column); the last lane is the chance of sampling the first surface.
   std::vector<Color4> nodes() const;
 
-  // B as a look-up finds it in these nodes, over exp(-least_decay()): at a node of the thickness.
+  // Returns B as a look-up finds it in these nodes, over exp(-least_decay()), at a node of the thickness.
   Rgb value(const std::vector<Color4>& nodes, int d, int c, int column) const;
 
-  // A over exp(-least_decay()) at a node of the thickness, as (wavelength, column).
+  // Returns A over exp(-least_decay()) at a node of the thickness, as (wavelength, column).
   const std::vector<float>& shares(int d) const { return shares_[static_cast<std::size_t>(d)]; }
 
  private:

@@ -1,4 +1,4 @@
-// Makes L and X of a textured table (sunbeam/textured_table.h) from a factored one, whose arrays
+// This file makes L and X of a textured table (sunbeam/textured_table.h) from a factored one, whose arrays
 // sunbeam/detail/factors.h describes. runtime/src/lookup/textured_rest.h looks them up.
 #pragma once
 

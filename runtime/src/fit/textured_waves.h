@@ -1,5 +1,5 @@
-// A WaveField at the directions of a textured table's array L, for all thicknesses: A relative to its least
-// decay, in floats, several at a time.
+// This is a WaveField at the directions of a textured table's array L, for all thicknesses. It gives A
+// relative to its least decay, in floats, several at a time.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace sunbeam::inline v1 {
 
-// Where a fringe order lies among the nodes of an array, whose axis is even or has one node. Four nodes
-// always, so that loops have no branch; arrays carry kMoreOrders rows more.
+// Says where a fringe order lies among the nodes of an array, whose axis is even or has one node. There are
+// always four nodes, so that loops have no branch; arrays carry kMoreOrders rows more.
 struct OrderStencil {
   OrderStencil(const Axis& axis, double order);
 
@@ -21,7 +21,7 @@ struct OrderStencil {
 };
 inline constexpr std::size_t kMoreOrders = 3;
 
-// `values` as (fringe_order, column), `stride` columns.
+// Interpolates `values`, which are (fringe_order, column) with `stride` columns.
 inline float blend(const std::vector<float>& values, const OrderStencil& at, std::size_t stride,
                    std::size_t column) {
   const float* from = values.data() + at.first * stride + column;
@@ -29,18 +29,18 @@ inline float blend(const std::vector<float>& values, const OrderStencil& at, std
          at.weight[3] * from[3 * stride];
 }
 
-// The fringe orders of all nodes of a grid; they depend on no base and no pigment.
+// Holds the fringe orders of all nodes of a grid; they depend on no base and no pigment.
 struct TexturedOrders {
   TexturedOrders(const Table& table, const TexturedGrid& grid);
 
-  // Of a wavelength, in the arrays of those names.
+  // These return the place of a wavelength in the arrays of those names.
   const OrderStencil& arrival_at_thickness(int d, std::size_t k, std::size_t c) const {
     return arrival[(static_cast<std::size_t>(d) * waves + k) * TexturedGrid::kCosines + c];
   }
   const OrderStencil& arrival_at_path(int p, std::size_t k) const {
     return path[static_cast<std::size_t>(p) * waves + k];
   }
-  // In `returned` or `exchange`, whichever the table has.
+  // Returns its place in `returned` or `exchange`, whichever the table has.
   const OrderStencil& visits_at(int d, std::size_t k) const {
     return visits[static_cast<std::size_t>(d) * waves + k];
   }
@@ -49,7 +49,7 @@ struct TexturedOrders {
   std::vector<OrderStencil> arrival, path, visits;
 };
 
-// What it is made of must outlive it.
+// Gives what the fit asks of each wavelength. What it is made of must outlive it.
 class TexturedWaves {
  public:
   static constexpr int kCosines = TexturedGrid::kCosines;
@@ -58,17 +58,18 @@ class TexturedWaves {
   TexturedWaves(const Table& table, const Material& material, const TexturedGrid& grid,
                 const TexturedOrders& orders, const FilmSpectrum& film);
 
-  // A over exp(-least_decay()), as (wavelength, column): at a node of the thickness, or of the path.
+  // These return A over exp(-least_decay()), as (wavelength, column), at a node of the thickness, or of the
+  // path.
   std::vector<float> at_thickness(int d) const;
   std::vector<float> at_path(int p) const;
 
-  // tau/m~ of the wavelength that the pigment absorbs least.
+  // Returns tau/m~ of the wavelength that the pigment absorbs least.
   double least_decay(int c) const { return least_decay_[static_cast<std::size_t>(c)]; }
 
-  // Of a wavelength at a node of the thickness. What path "product" adds is in its bracket.
+  // Returns the gain of a wavelength at a node of the thickness. What path "product" adds is in its bracket.
   double gain(int d, std::size_t k) const;
 
-  // Of a path node, at which the thickness depends on the cosine.
+  // Returns the thickness of a path node, which depends on the cosine.
   double thickness_nm(int p, int c) const;
 
   const WaveField& field() const { return field_; }

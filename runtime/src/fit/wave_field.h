@@ -1,6 +1,6 @@
-// What a factored table says of each wavelength at one base IOR and absorption, in the symbols of
-// sunbeam/detail/factors.h, which stores the arrays that bake/factored/arrival.h, returned.h and exchange.h
-// make:
+// A WaveField is what a factored table says of each wavelength at one base IOR and absorption, in the symbols
+// of sunbeam/detail/factors.h, which stores the arrays that bake/factored/arrival.h, returned.h and
+// exchange.h make:
 //
 //   depth  tau,   arrival  ln A but for the pigment,   gain  g,   bracket  V of path "product",
 //   rest = g A(wi) A(wo) V(wi, wo),  V = 1 with path "sum".
@@ -27,11 +27,11 @@ class WaveField {
   const Material& material() const { return material_; }
 
   double depth(std::size_t k) const { return depths_[k]; }
-  // Over (fringe_order, cos_theta, phi), for a rough film. Wavelengths of one depth have one slice in common,
-  // whose number is slice(k).
+  // The arrivals are arrays over (fringe_order, cos_theta, phi), for a rough film. Wavelengths of one depth
+  // have one slice in common, whose number is slice(k).
   std::size_t slice(std::size_t k) const { return slice_[k]; }
   const std::vector<NdArray>& arrivals() const { return arrivals_; }
-  // s kd / pi; with path "sum" all visits of the base add up to 1 / (1 - kd returned) of it.
+  // Returns s kd / pi; with path "sum" all visits of the base add up to 1 / (1 - kd returned) of it.
   double gain(std::size_t k, double returned = 0) const;
 
  private:
@@ -47,18 +47,18 @@ class WaveField {
 // become a per cent. So a gain with which `most_leaving` would leave is cut.
 inline double cut_gain(double gain, double most_leaving) { return gain / std::max(most_leaving, 1.0); }
 
-// A node of the two axes of a direction in an array, (cos_theta, phi), and its weight there.
+// Holds a node of the two axes of a direction in an array, (cos_theta, phi), and its weight there.
 struct DirectionTap {
   std::size_t node;
   double weight;
 };
 std::vector<DirectionTap> direction_taps(const Axis& cosines, const Axis& phis, double cosine, double phi);
 
-// One direction of `exchange` contracted: adds to each node of the other what the array, (direction,
+// Contracts one direction of `exchange`: adds to each node of the other what the array, (direction,
 // direction), holds there.
 void contract(std::span<const float> exchange, std::span<const DirectionTap> from, std::span<double> row);
 
-// V of two directions, whose cosines below the film are m_i and m_o; `row` is exchange with the first
+// Returns V of two directions, whose cosines below the film are m_i and m_o; `row` is exchange with the first
 // contracted.
 double bracket(double depth, double m_i, double m_o, std::span<const double> row,
                std::span<const DirectionTap> to);

@@ -1,5 +1,5 @@
-// Makes what BoundTable (runtime/src/lookup/bound_table.h) samples with, from the values of a table at one
-// parameter point. Densities follow the mean over channels, and over the viewer's azimuth.
+// This file makes what BoundTable (runtime/src/lookup/bound_table.h) samples with, from the values of a table
+// at one parameter point. Densities follow the mean over channels, and over the viewer's azimuth.
 #pragma once
 
 #include "runtime/src/lookup/bound_values.h"
@@ -11,7 +11,7 @@ namespace sunbeam::inline v1 {
 struct BoundSampling {
   explicit BoundSampling(const BoundValues& values);
 
-  // Viewers at even roots of the cosine, as many as rows.
+  // Viewers are at even roots of the cosine, as many as rows.
   static constexpr int kViewers = FacetCells::kRows;
 
   std::vector<float> first_chances;  // of sampling the first surface, for each viewer

@@ -1,4 +1,5 @@
-// A table bound to one parameter point, behind TableBsdf: what is prepared, and how directions are looked up.
+// This file is what TableBsdf is made of: a table bound to one parameter point. It says what is prepared and
+// how directions are looked up.
 #pragma once
 
 #include <array>
@@ -44,7 +45,7 @@ class BoundTable {
   bool is_smooth() const { return smooth_; }
 
  private:
-  // What the viewer decides, for any number of lights.
+  // Holds what the viewer decides, for any number of lights.
   struct Viewer {
     Viewer(const BoundTable& table, const Vec3& wo);
 
@@ -73,8 +74,8 @@ class BoundTable {
   static_assert((kRatios - 1) % (kRows - 1) == 0 && (kRatios - 1) % (CosineRows::kNodes - 1) == 0,
                 "what is linear between rows and nodes of sampling must be so between ratios");
 
-  // The last lanes of S and Q, of every table: for a viewer there the chance of trying the first surface, and
-  // for a pair the density of cosine_rows_.
+  // The last lanes of S and Q, of every table, hold for a viewer there the chance of trying the first
+  // surface, and for a pair the density of cosine_rows_.
   BoundValues values_;
   Facets facets_;
   bool smooth_, separable_;

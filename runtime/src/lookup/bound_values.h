@@ -1,5 +1,5 @@
-// The values of a table at one parameter point: what the film reflects, the rest, and the albedos of both.
-// BoundTable looks directions up in them and samples them.
+// This file holds the values of a table at one parameter point: what the film reflects, the rest, and the
+// albedos of both. BoundTable looks directions up in them and samples them.
 #pragma once
 
 #include <functional>
@@ -21,18 +21,17 @@ struct BoundValues {
   // An isotropic factored table's rest is in `separable`, and the variant is empty.
   bool is_separable() const { return std::holds_alternative<std::monostate>(other); }
 
-  // 1/sr, of directions above the horizon, in a table that is not separable.
+  // Returns the rest, 1/sr, of directions above the horizon, in a table that is not separable.
   Rgb other_rest(const Vec3& wo, const Vec3& wi) const;
   Rgb film_reflectance(double cosine) const;
 
-  // The mean of the rest over the azimuth of wi, a function of the cosine of wi, is what `visit` is called
-  // with.
+  // Calls `visit` with the mean of the rest over the azimuth of wi, which is a function of the cosine of wi.
   using OfCosine = std::function<Rgb(double cos_i)>;
   void visit_azimuth_mean(const Vec3& wo, const std::function<void(const OfCosine&)>& visit) const;
 
-  // Int f_first cos dwi, the Dirac of a smooth film included, with `nodes` visible normals each way.
+  // Returns Int f_first cos dwi, the Dirac of a smooth film included, with `nodes` visible normals each way.
   Rgb first_albedo(const Vec3& wo, int nodes) const;
-  // Int f_rest cos dwi.
+  // Returns Int f_rest cos dwi.
   Rgb rest_albedo(const Vec3& wo) const;
 
   Material material;

@@ -1,5 +1,5 @@
-// How a textured table is looked up (sunbeam/textured_table.h): what it holds, what a viewer decides, and
-// what mixture.h asks for, of each kind of table.
+// This file looks a textured table up (sunbeam/textured_table.h). It says what the table holds, what a viewer
+// decides, and what mixture.h asks for, of each kind of table.
 #pragma once
 
 #include <cmath>
@@ -13,10 +13,10 @@
 
 namespace sunbeam::inline v1 {
 
-// Factored, isotropic and of path "sum"; any other factored one; dense.
+// The kinds are: factored, isotropic and of path "sum"; any other factored one; dense.
 enum class TexturedKind { plain, general, dense };
 
-// Where a direction lies among the nodes of L, and its closed forms.
+// Says where a direction lies among the nodes of L, and holds its closed forms.
 struct TexturedEnd {
   TexturedEnd(const TexturedRest& rest, const FilmCosines& film, const ParameterTaps& taps,
               const PigmentCosines& pigment, float cosine, float root)
@@ -50,13 +50,13 @@ struct TexturedData {
   const EvenAxis& axis(std::size_t k) const {
     return kind == TexturedKind::dense ? albedos->axis(k) : rest->axis(k);
   }
-  // Of the pigment relative to the parameter, as far as the rest decays with it.
+  // Returns the mean absorption of the pigment relative to the parameter, as far as the rest decays with it.
   float mean_absorption() const {
     if (kind != TexturedKind::dense) return rest->media().absorption[3];
     return material.scatters() || material.has_multiple_facets() ? 0 : 1;
   }
 
-  // B B over T T; one exponential serves both.
+  // Returns B B over T T; one exponential serves both.
   Color4 rest_factor(const ParameterTaps& taps, const PigmentCosines& pigment, const TexturedEnd& o,
                      const TexturedEnd& i) const {
     const float paths = o.per_pigment_cosine + i.per_pigment_cosine;
@@ -64,7 +64,7 @@ struct TexturedData {
                 (pigment.optical_depth * paths) * rest->media().absorption);
   }
 
-  // The same for an anisotropic film or path "product", times its bracket V1 + X.
+  // Returns the same for an anisotropic film or path "product", times its bracket V1 + X.
   SUNBEAM_NOINLINE Color4 general_factor(const Parameters& parameters, const ParameterTaps& taps,
                                          const PigmentCosines& pigment, const TexturedEnd& o,
                                          const TexturedEnd& i, const Vec3& wo, const Vec3& wi) const {
@@ -81,7 +81,7 @@ struct TexturedData {
     return factor * (one_visit + rest->exchange(parameters, end_o, end_i));
   }
 
-  // The azimuth folded into a quadrant, over pi/2; of no matter for an isotropic film.
+  // Returns the azimuth folded into a quadrant, over pi/2; it is of no matter for an isotropic film.
   float quadrant(const Vec3& w) const {
     if (facets.u2 == facets.v2) return 0;
     return static_cast<float>(std::atan2(std::abs(w.y), std::abs(w.x)) * (2 / kPi));
@@ -97,13 +97,14 @@ struct TexturedData {
   bool smooth;
 };
 
-// One parameter point of a factored table; the dense kind is below. Directions lie above the horizon.
+// Looks up one parameter point of a factored table; the dense kind is below. Directions lie above the
+// horizon.
 template <TexturedKind kKind>
 class TexturedLookup {
  public:
   explicit TexturedLookup(const TexturedTable::At& at) : at_(at), data_(*at.data_) {}
 
-  // What a viewer decides; L is on its way.
+  // Holds what a viewer decides; L is on its way.
   struct Viewer {
     Viewer(const TexturedLookup& lookup, const Vec3& wo)
         : facets(lookup.data_.facets, wo), end(lookup.end(facets.cosine, facets.root)) {
@@ -140,7 +141,7 @@ class TexturedLookup {
     return {to_rgb(passing * rest + pair.lobe * reflectance), double{rest_pdf + chance * pair.pdf}};
   }
 
-  // Estimate of the albedo, mean over channels.
+  // Estimates the albedo, mean over channels.
   double albedo(const Viewer& viewer) const {
     const Color4 first = film_at(std::sqrt(data_.film.film_cosine_squared(viewer.facets.cosine)));
     return double{first[0] + first[1] + first[2]} / 3 / double{data_.rest->at(at_.taps_, viewer.end.at)[3]};
@@ -151,7 +152,7 @@ class TexturedLookup {
     return {*data_.rest, data_.film, at_.taps_, at_.pigment_, cosine, root};
   }
 
-  // Reflectances of the film at up to three cosines, at the price of little more than one.
+  // Writes the film's reflectances at up to three cosines, at the price of little more than one.
   void fold(std::span<const float> cosines, FloatRgb* reflectance) const {
     const Parameters& at = at_.parameters_;
     data_.rest->media().film.fold(at.film_thickness_nm, at.base_ior, cosines, reflectance);

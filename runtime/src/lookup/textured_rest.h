@@ -1,4 +1,4 @@
-// Looks up the rest of a factored table over all its parameters: the arrays L and X of
+// This file looks up the rest of a factored table over all its parameters: the arrays L and X of
 // sunbeam/textured_table.h, which runtime/src/fit/textured_fit.h makes.
 #pragma once
 
@@ -16,22 +16,22 @@ class TexturedRest {
  public:
   TexturedRest(const Table& table, Arithmetic arithmetic);
 
-  // Isotropic and of path "sum": L says all, whatever the azimuth.
+  // Says whether the table is isotropic and of path "sum": then L says all, whatever the azimuth.
   bool is_plain() const { return grid_.phis == 1 && pairs_.empty(); }
   bool is_product() const { return !pairs_.empty(); }
 
   ParameterTaps parameter_taps(const Parameters& at) const;
 
-  // A direction among the nodes.
+  // Says where a direction lies among the nodes.
   struct Direction {
     EvenPosition path, cosine;
   };
-  // `path` is the root of FilmCosines::path_squared, `root` that of the cosine.
+  // Locates a direction: `path` is the root of FilmCosines::path_squared, `root` that of the cosine.
   Direction direction(const ParameterTaps& taps, float path, float root) const {
     return {grid_.locate_path(taps.thickness_nm, path), {root, TexturedGrid::kCosines}};
   }
 
-  // L; the last lane is the chance of sampling the first surface, interpolated too.
+  // Returns L; the last lane is the chance of sampling the first surface, interpolated too.
   Color4 at(const ParameterTaps& taps, const Direction& w) const {
     const Color4* first = nodes_.data() + taps.row + w.path.lower * stride_ + w.cosine.lower;
     const Color4* second = first + stride_;
@@ -47,7 +47,7 @@ class TexturedRest {
     return low[0] + w.path.upper_weight * (low[1] - low[0]);
   }
 
-  // The same of an anisotropic film; `phi` is the azimuth folded into a quadrant, over pi/2.
+  // Returns the same of an anisotropic film; `phi` is the azimuth folded into a quadrant, over pi/2.
   Color4 at(const ParameterTaps& taps, const Direction& w, float phi) const {
     if (grid_.phis == 1) return at(taps, w);
     const EvenPosition azimuth(phi, grid_.phis);
@@ -58,14 +58,14 @@ class TexturedRest {
     return low + azimuth.upper_weight * (at(upper, w) - low);
   }
 
-  // X of two directions, each the root of its cosine and phi as above.
+  // exchange() returns X of two directions, each given by the root of its cosine and by phi as above.
   struct PairEnd {
     float root, phi;
   };
   Color4 exchange(const Parameters& at, const PairEnd& o, const PairEnd& i) const;
 
-  // The chance of sampling the first surface, from the nearest parameters: they are given, and so the choice
-  // need not change smoothly with them.
+  // Returns the chance of sampling the first surface, from the nearest parameters: they are given, and so the
+  // choice need not change smoothly with them.
   float first_chance(const ParameterTaps& taps, const Direction& w) const {
     const int path = w.path.lower + (w.path.upper_weight < 0.5f ? 0 : 1);
     const Color4* row = nodes_.data() + taps.nearest + path * stride_ + w.cosine.lower;
@@ -86,7 +86,7 @@ class TexturedRest {
   std::size_t bytes() const { return (nodes_.size() + pairs_.size()) * sizeof(Color4); }
 
  private:
-  // Neighbours of a direction among those of pairs_, and their weights.
+  // Holds the neighbours of a direction among those of pairs_, and their weights.
   struct PairTaps {
     std::array<int, 4> node;
     std::array<float, 4> weight;
@@ -99,8 +99,8 @@ class TexturedRest {
   int stride_;                 // from path to path, in nodes
   std::array<int, 4> corner_;  // distance of a place's rows from the first
   std::vector<Color4> nodes_;  // (path, base_ior, absorption_per_nm, phi, root of the cosine)
-  // Path "product" only: (film_thickness_nm, base_ior, absorption_per_nm, direction, direction), directions
-  // as (phi, root of the cosine).
+  // Only path "product" has them: (film_thickness_nm, base_ior, absorption_per_nm, direction, direction),
+  // with directions as (phi, root of the cosine).
   std::vector<Color4> pairs_;
 };
 

@@ -1,4 +1,5 @@
-// The four angular axes of a dense table's remainder (table.h): directions located, and nodes summed up.
+// This file locates directions on the four angular axes of a dense table's remainder (table.h), and sums up
+// the nodes there.
 #pragma once
 
 #include <array>
@@ -12,7 +13,7 @@ namespace sunbeam::inline v1 {
 
 class DenseAngles {
  public:
-  // The last four axes of `remainder`.
+  // Takes the last four axes of `remainder`.
   DenseAngles(const NdArray& remainder, Symmetry symmetry) : symmetry_(symmetry) {
     const std::size_t first = remainder.axes().size() - 4;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -38,7 +39,7 @@ class DenseAngles {
       phi_o_ = angles.bound_[3].at(at.phi_o);
     }
 
-    // `cells` of one node of the parameters.
+    // Sums up `cells`, those of one node of the parameters.
     Color4 sum(const Color4* cells) const {
       Color4 sum{};
       for (int a = 0; a < i_.count; ++a)

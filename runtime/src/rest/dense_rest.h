@@ -1,5 +1,6 @@
-// The rest of a dense table (sunbeam/table.h): flat arrays of single floats over the angles, at one parameter
-// point or over all of them. bake/dense/nodes.h makes the arrays; sunbeam/detail/rest_frame.h decodes them.
+// This file looks up the rest of a dense table (sunbeam/table.h). It holds flat arrays of single floats over
+// the angles, at one parameter point or over all of them. bake/dense/nodes.h makes the arrays;
+// sunbeam/detail/rest_frame.h decodes them.
 #pragma once
 
 #include <optional>
@@ -11,10 +12,11 @@
 
 namespace sunbeam::inline v1 {
 
-// Axes (film_thickness_nm, base_ior, absorption_per_nm) or (film_thickness_nm, base_ior, cos_theta).
+// These are the axes (film_thickness_nm, base_ior, absorption_per_nm) or (film_thickness_nm, base_ior,
+// cos_theta).
 using ThreeAxes = std::array<BoundAxis, 3>;
 
-// An array over (film_thickness_nm, base_ior, cos_theta).
+// Interpolates an array over (film_thickness_nm, base_ior, cos_theta).
 class DenseFilm {
  public:
   explicit DenseFilm(const NdArray& array);
@@ -26,21 +28,21 @@ class DenseFilm {
   std::vector<Color4> nodes_;
 };
 
-// Directions lie above the horizon.
+// Looks the rest up. Directions lie above the horizon.
 class DenseRest {
  public:
-  // Over the whole table: its own arrays, interpolated at every look-up.
+  // Serves the whole table: its own arrays are interpolated at every look-up.
   explicit DenseRest(const Table& table);
-  // At the parameters of `material`, which lie in the grid: the arrays are sliced. What parameters look-ups
-  // are given is then of no matter.
+  // Serves the parameters of `material`, which lie in the grid: the arrays are sliced. What parameters
+  // look-ups are given is then of no matter.
   DenseRest(const Table& table, const Material& material);
 
-  // 1/sr.
+  // Returns the rest, 1/sr.
   Rgb rest(const Parameters& at, const Vec3& wo, const Vec3& wi) const;
-  // Of a table at one point.
+  // Returns the standard error of the rest, 1/sr, of a table at one point.
   Rgb standard_error(const Vec3& wo, const Vec3& wi) const;
 
-  // Mean of the rest over the azimuth of wi, at cosines of wi.
+  // Returns the mean of the rest over the azimuth of wi, at cosines of wi.
   class AzimuthMean {
    public:
     AzimuthMean(const DenseRest& rest, const Parameters& at, const Vec3& wo);
@@ -57,7 +59,7 @@ class DenseRest {
     std::vector<Node> nodes_;
   };
 
-  // Of all points only.
+  // Returns the film's reflectance. Only a rest over all points has it.
   const DenseFilm& reflectance() const { return *reflectance_; }
 
   std::size_t bytes() const;
@@ -75,11 +77,11 @@ class DenseRest {
   std::optional<DenseAngles> angles_;
   std::vector<Color4> remainder_;
 
-  // Of all points.
+  // A rest over all points has these.
   std::optional<ThreeAxes> axes_;
   std::optional<DenseFilm> reflectance_, transmittance_;
 
-  // Of one point.
+  // A rest at one point has these.
   std::vector<Rgb> transmittances_;  // over even cosines
   NdArray stderr_;                   // over the four angles
 };

@@ -1,4 +1,5 @@
-// The rest of a factored table at one parameter point, for directions w = (c, phi), c the cosine:
+// This file looks up the rest of a factored table at one parameter point, for directions w = (c, phi), c the
+// cosine:
 //
 //   rest(wi, wo) = S(wi) S(wo) Q(wi, wo)     1/sr, each colour channel apart
 //
@@ -18,13 +19,13 @@
 
 namespace sunbeam::inline v1 {
 
-// The equation above, of two values of S and one of Q.
+// Evaluates the equation above, of two values of S and one of Q.
 inline Color4 separable_rest(const Color4& scale_o, const Color4& scale_i, const Color4& ratio) {
   return scale_o * scale_i * ratio;
 }
 
-// S and Q of an isotropic film. A place beyond the last node, of weight 0, may be read. The last lanes are
-// the owner's: BoundTable keeps there what its sampling looks up at the same places.
+// Holds S and Q of an isotropic film. A place beyond the last node, of weight 0, may be read. The last lanes
+// are the owner's: BoundTable keeps there what its sampling looks up at the same places.
 struct Separable {
   static constexpr int kScaleCosines = 513, kRatioRoots = 65;
 
@@ -34,20 +35,20 @@ struct Separable {
     const Color4 low = lerp(row, root_i), high = lerp(row + kRatioRoots, root_i);
     return low + root_o.upper_weight * (high - low);
   }
-  // 1/sr, of two cosines in (0, 1].
+  // Returns the rest, 1/sr, of two cosines in (0, 1].
   Color4 rest(float cos_o, float cos_i) const;
 
   std::vector<Color4> scales = std::vector<Color4>(kScaleCosines + 1);                    // S
   std::vector<Color4> ratios = std::vector<Color4>((kRatioRoots + 1) * kRatioRoots + 1);  // Q at (wo, wi)
 };
 
-// S and Q of an anisotropic film, at (c, phi) and (wo, wi).
+// Holds S and Q of an anisotropic film, at (c, phi) and (wo, wi).
 struct AnisotropicSeparable {
   static constexpr int kScaleCosines = 129, kScaleAzimuths = 17;
   static constexpr int kRatioRoots = 25, kRatioAzimuths = 7;
   static constexpr int kRatioNodes = kRatioRoots * kRatioAzimuths;
 
-  // 1/sr, for directions above the horizon.
+  // Returns the rest, 1/sr, for directions above the horizon.
   Color4 rest(const Vec3& wo, const Vec3& wi) const;
 
   std::vector<Color4> scales, ratios;

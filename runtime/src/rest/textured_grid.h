@@ -1,4 +1,4 @@
-// Where the nodes of a textured table's arrays L and X lie (sunbeam/textured_table.h).
+// This file says where the nodes of a textured table's arrays L and X lie (sunbeam/textured_table.h).
 // runtime/src/fit/textured_fit.h makes the arrays, textured_rest.h looks them up.
 #pragma once
 
@@ -14,19 +14,19 @@ struct TexturedGrid {
 
   static constexpr int kCosines = 13;  // even roots
 
-  // Of a node; the cosine is kept from 0, where nothing arrives.
+  // These return the direction and the path of a node; the cosine is kept from 0, where nothing arrives.
   static double cosine(int c);
   double phi(int p) const { return phis == 1 ? 0 : kPi / 2 * p / (phis - 1); }
   double path_nm(int node) const {
     return per_extent > 0 ? first_path + node / ((paths - 1) * double{per_extent}) : double{first_path};
   }
 
-  // Directions of L, as (phi, root of the cosine), and of X.
+  // These count the directions of L, as (phi, root of the cosine), and of X.
   int columns() const { return phis * kCosines; }
   int pair_ends() const { return pair_cosines * pair_phis; }
 
-  // L is (path, base_ior, absorption_per_nm, phi, root of the cosine): cells from path to path, and the cell
-  // at the first path and direction.
+  // L is (path, base_ior, absorption_per_nm, phi, root of the cosine). These return the cells from path to
+  // path, and the cell at the first path and direction.
   std::size_t path_stride() const {
     return static_cast<std::size_t>(axes[1].size() * axes[2].size() * columns());
   }
@@ -35,15 +35,15 @@ struct TexturedGrid {
   }
   std::size_t cells() const { return static_cast<std::size_t>(paths) * path_stride(); }
 
-  // X is (film_thickness_nm, base_ior, absorption_per_nm, direction, direction): the first cell at a node of
-  // the parameters.
+  // X is (film_thickness_nm, base_ior, absorption_per_nm, direction, direction). This returns the first cell
+  // at a node of the parameters.
   std::size_t first_pair(int thickness, int base_ior, int absorption) const {
     const int node = (thickness * axes[1].size() + base_ior) * axes[2].size() + absorption;
     return static_cast<std::size_t>(node) * static_cast<std::size_t>(pair_ends() * pair_ends());
   }
   std::size_t pair_cells() const { return first_pair(axes[0].size(), 0, 0); }
 
-  // `path` relative to that at normal incidence: textured_path().
+  // Locates a path; `path` is relative to that at normal incidence: textured_path().
   EvenPosition locate_path(float thickness_nm, float path) const {
     return {std::max((thickness_nm * path - first_path) * per_extent, 0.0f), paths};
   }

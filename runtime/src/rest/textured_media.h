@@ -1,5 +1,5 @@
-// What of the film and the pigment a textured table folds in closed form at every look-up: P of a smooth film
-// and a (sunbeam/textured_table.h).
+// This file holds what of the film and the pigment a textured table folds in closed form at every look-up: P
+// of a smooth film and a (sunbeam/textured_table.h).
 #pragma once
 
 #include "runtime/src/base/color4.h"
@@ -11,7 +11,7 @@ namespace sunbeam::inline v1 {
 struct TexturedMedia {
   TexturedMedia(const Table& table, Arithmetic arithmetic);
 
-  // The film's transmittance folded, from its reflectance; kept above 0.
+  // Returns the film's transmittance folded, from its reflectance; it is kept above 0.
   Color4 passing(const FloatRgb& reflectance) const {
     constexpr float kLeastPassing = 1e-4f;
     const Color4 all{total.r - reflectance.r, total.g - reflectance.g, total.b - reflectance.b, 0};

@@ -1,5 +1,5 @@
-// A discrete distribution drawn in constant time without a search: Walker's alias method, tables by Vose
-// 1991.
+// This file draws from a discrete distribution in constant time without a search: by Walker's alias method,
+// with tables by Vose 1991.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ class AliasTable {
   static_assert(kBins <= 4096 && (kBins & (kBins - 1)) == 0, "bins are drawn by the highest bits");
 
  public:
-  // In proportion to `weights`, >= 0; even if they are all 0.
+  // Makes chances in proportion to `weights`, >= 0; they are even if all weights are 0.
   explicit AliasTable(std::span<const double> weights) {
     double total = 0;
     for (const double w : weights) total += w;
@@ -40,7 +40,7 @@ class AliasTable {
       for (const std::size_t k : rest) set(k, 1, k);
   }
 
-  // Relative to an even one; what the rounded thresholds amount to.
+  // Returns the densities relative to an even one; they are what the rounded thresholds amount to.
   std::array<double, kBins> densities() const {
     std::array<double, kBins> drawn{};
     for (std::uint32_t k = 0; k < kBins; ++k) {
@@ -51,7 +51,7 @@ class AliasTable {
     return drawn;
   }
 
-  // Bits in place of a choice, which a processor would guess wrong.
+  // Draws a bin, by bits in place of a choice, which a processor would guess wrong.
   std::uint32_t draw(std::uint32_t random) const {
     const std::uint32_t bin = random / kWhole, packed = bins_[bin];
     const std::uint32_t stays = random % kWhole < threshold(packed), other = alias(packed);

@@ -1,6 +1,6 @@
-// What sample() draws the rest from: for each viewer a density over the root of cos(theta_i), linear between
-// even nodes, uniform in azimuth. Rows for viewers at even roots of cos(theta_o); between two of them one is
-// chosen by lot, and the density is their mixture.
+// This is what sample() draws the rest from: for each viewer a density over the root of cos(theta_i), linear
+// between even nodes, uniform in azimuth. Rows are for viewers at even roots of cos(theta_o); between two of
+// them one is chosen by lot, and the density is their mixture.
 #pragma once
 
 #include <array>
@@ -16,10 +16,11 @@ class CosineRows {
  public:
   static constexpr int kNodes = 33;  // of lights
 
-  // Root of the cosine of a node.
+  // Returns the root of the cosine of a node.
   static double root_of_node(int node) { return static_cast<double>(node) / kIntervals; }
 
-  // In order of viewers. `density` at each node over the root, in any unit, >= 0; returns its integral.
+  // Adds the rows in the order of viewers. `density` is that at each node over the root, in any unit, >= 0;
+  // its integral is returned.
   double add_row(std::span<const double> density) {
     std::array<double, kIntervals> power;
     for (std::size_t k = 0; k < kIntervals; ++k) power[k] = density[k] + density[k + 1];
@@ -30,14 +31,14 @@ class CosineRows {
     return total;
   }
 
-  // Over the root, of a viewer among the rows and a light among the nodes.
+  // Returns the density over the root, of a viewer among the rows and a light among the nodes.
   float density(const EvenPosition& viewer, const EvenPosition& light) const {
     const float* row = density_.data() + viewer.lower * kNodes;
     const float low = lerp(row, light), high = lerp(row + kNodes, light);
     return low + viewer.upper_weight * (high - low);
   }
 
-  // Root of cos(theta_i), > 0.
+  // Draws the root of cos(theta_i), > 0.
   float sample(int viewer, Rng& rng) const {
     const std::size_t k = rows_[static_cast<std::size_t>(viewer)].draw(rng.next());
     const float* ends = density_.data() + static_cast<std::size_t>(viewer) * kNodes + k;

@@ -1,7 +1,7 @@
-// What sample() draws the first surface of an isotropic rough film from: visible normals (facets.h), drawn
-// from the unit square not evenly but in proportion to what the film reflects there and the facets let out.
-// Cells of the square, for viewers at even roots of the cosine; between two of them one is chosen by lot, and
-// the density is their mixture.
+// This is what sample() draws the first surface of an isotropic rough film from: visible normals (facets.h),
+// drawn from the unit square not evenly but in proportion to what the film reflects there and the facets let
+// out. The square has cells, for viewers at even roots of the cosine; between two of them one is chosen by
+// lot, and the density is their mixture.
 //
 // The square is (azimuth of the mirrored cap about the viewer's over 2 pi, height in the cap). Both halves of
 // the azimuth are mirror images.
@@ -23,7 +23,7 @@ class FacetCells {
 
   FacetCells() : density_(kCells * kStride) {}
 
-  // Of cells, turn by turn; any unit, >= 0. In the order of viewers.
+  // Adds the rows in the order of viewers. `power` is that of the cells, turn by turn, in any unit, >= 0.
   void add_row(std::span<const double> power) {
     rows_.emplace_back(power);
     const auto densities = rows_.back().densities();
@@ -31,7 +31,7 @@ class FacetCells {
       density_[cell * kStride + rows_.size() - 1] = static_cast<float>(densities[cell]);
   }
 
-  // In the square.
+  // Describes a point in the square.
   struct Point {
     FloatTurn turn;
     float height;
@@ -49,7 +49,7 @@ class FacetCells {
             (static_cast<float>(cell % kHeights) + uniform_float(rng)) * (1.0f / kHeights)};
   }
 
-  // The cells that the normals along h fall into. Stretched to roughness 1 and times r (facets.h),
+  // Returns the cells that the normals along h fall into. Stretched to roughness 1 and times r (facets.h),
   // with h' = (h.x, h.y, a h.z) the mirrored wo is m = e h' - wo', e = a l^2 / |h'|^2; its height is that of
   // m.z, and its azimuth has the cosine m.wo' / (|m| |wo'|) in the plane.
   template <int kLights>
@@ -63,7 +63,7 @@ class FacetCells {
     return turn * kHeights + convert<Ints4>(max4(min4(level, last), Color4{}));
   }
 
-  // Over the square.
+  // Returns the density over the square.
   float density(const EvenPosition& row, int cell) const {
     const float* viewers = density_.data() + static_cast<std::size_t>(cell) * kStride + row.lower;
     return viewers[0] + row.upper_weight * (viewers[1] - viewers[0]);

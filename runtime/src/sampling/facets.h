@@ -1,5 +1,6 @@
-// GGX facets (ggx.h) as look-ups meet them, in single floats: their lobe, and bounded visible normals drawn
-// and their density (Eto and Tokuyoshi 2023), with all roots and divisions several at a time.
+// This file evaluates GGX facets (ggx.h) as look-ups meet them, in single floats: their lobe, and bounded
+// visible normals drawn and their density (Eto and Tokuyoshi 2023). All roots and divisions are made several
+// at a time.
 //
 // With h = wo + wi not normalised, l = |h|, q = D's quadratic form of h, r = cosine (1 + 2 Lambda), s = 1 +
 // sin_o and a the lesser roughness,
@@ -14,10 +15,10 @@
 
 namespace sunbeam::inline v1 {
 
-// In [0, 1), 24 random bits.
+// Draws a number in [0, 1) of 24 random bits.
 inline float uniform_float(Rng& rng) { return static_cast<float>(rng.next() >> 8) * 0x1p-24f; }
 
-// A unit vector. The floats' length is off by 1e-7, and its inverse by Newton's step from 1 by 1e-14.
+// Returns a unit vector. The floats' length is off by 1e-7, and its inverse by Newton's step from 1 by 1e-14.
 inline Vec3 at_random_azimuth(double cosine, Rng& rng) {
   const FloatTurn phi(rng);
   const double x{phi.cosine}, y{phi.sine};
@@ -25,7 +26,7 @@ inline Vec3 at_random_azimuth(double cosine, Rng& rng) {
   return {sine * x, sine * y, cosine};
 }
 
-// What does not depend on directions. All 0 for a smooth film.
+// Holds what does not depend on directions. All is 0 for a smooth film.
 struct Facets {
   explicit Facets(const Roughness& roughness)
       : u(static_cast<float>(roughness.u)),
@@ -40,7 +41,7 @@ struct Facets {
   float u, v, u2, v2, u2v2, uv3_per_pi, least2;
 };
 
-// What one viewer adds; wo.z > 0.
+// Holds what one viewer adds; wo.z > 0.
 struct FacetViewer {
   FacetViewer(const Facets& facets, const Vec3& wo)
       : x(static_cast<float>(wo.x)), y(static_cast<float>(wo.y)), cosine(static_cast<float>(wo.z)) {
@@ -57,10 +58,10 @@ struct FacetViewer {
     bottom = quotients[1];
   }
 
-  // wo mirrored at a visible normal; fewer go below the horizon than with the whole cap. phi is turned from
-  // the azimuth of wo, height goes from the cap's top, 0, to its bottom, 1. Stretched to roughness 1, and
-  // there all lengths times r, normals lie between wo and a point of the cap, which is uniform in the square.
-  // Reflection itself keeps the length of wo to the last digit.
+  // Returns wo mirrored at a visible normal; fewer go below the horizon than with the whole cap. phi is
+  // turned from the azimuth of wo, height goes from the cap's top, 0, to its bottom, 1. Stretched to
+  // roughness 1, and there all lengths times r, normals lie between wo and a point of the cap, which is
+  // uniform in the square. Reflection itself keeps the length of wo to the last digit.
   Vec3 mirrored(const Facets& facets, const Vec3& wo, const FloatTurn& phi, float height) const {
     const float below_top = height * (r + bottom), z = r - below_top;
     const bool is_vertical = sine2 == 0;
@@ -80,8 +81,8 @@ struct FacetViewer {
   float pdf_per_d;
 };
 
-// A pair of directions, both above the horizon. FacetLights<1> below would do, but costs a textured look-up a
-// twentieth.
+// Holds the lobe and the density of a pair of directions, both above the horizon. FacetLights<1> below would
+// do, but costs a textured look-up a twentieth.
 struct FacetPair {
   FacetPair(const Facets& facets, const FacetViewer& viewer, const Vec3& wo, const Vec3& wi)
       : cosine(static_cast<float>(wi.z)) {
@@ -108,8 +109,8 @@ struct FacetPair {
   float pdf;          // of mirrored(), 1/sr
 };
 
-// The same for several lights of one viewer, a lane each; what is left of four repeats others. Lights below
-// the horizon mean nothing and have a cosine of 0.
+// Holds the same for several lights of one viewer, a lane each; what is left of four repeats others. Lights
+// below the horizon mean nothing and have a cosine of 0.
 template <int kLights>
 struct FacetLights {
   FacetLights(const Facets& facets, const FacetViewer& viewer, const Vec3& wo, const Vec3* wi)
@@ -121,7 +122,7 @@ struct FacetLights {
   Color4 lobe;
 
  private:
-  // One coordinate of the lights and of their h.
+  // Holds one coordinate of the lights and of their h.
   struct Coordinate {
     Coordinate(const Vec3* wi, double Vec3::*at, const Vec3& wo) {
       const Doubles2 low{wi[0].*at, wi[kLights > 1 ? 1 : 0].*at};

@@ -1,4 +1,4 @@
-// An azimuth in single floats.
+// This file computes with azimuths in single floats.
 #pragma once
 
 #include <array>
@@ -10,12 +10,12 @@
 
 namespace sunbeam::inline v1 {
 
-// Cosine and sine to 2e-7: a table's, turned on by at most half a step, where short series do. Nothing waits
-// long for anything else, and there is no choice that a processor would have to guess.
+// Computes cosine and sine to 2e-7: those of a table, turned on by at most half a step, where short series
+// do. Nothing waits long for anything else, and there is no choice that a processor would have to guess.
 struct FloatTurn {
   static constexpr int kSteps = 32;
 
-  // Of 2 pi (step + inside) / kSteps, inside in [0, 1].
+  // Takes the angle 2 pi (step + inside) / kSteps, inside in [0, 1].
   FloatTurn(std::uint32_t step, float inside) {
     const float x = static_cast<float>(2 * kPi / kSteps) * (inside - 0.5f), x2 = x * x;
     const float s = x * (1 - x2 * (1.0f / 6 - x2 * (1.0f / 120))),
@@ -24,7 +24,7 @@ struct FloatTurn {
     cosine = middle_c * c - middle_s * s;
     sine = middle_s * c + middle_c * s;
   }
-  // Uniform, by one number.
+  // Draws a uniform azimuth by one number.
   explicit FloatTurn(Rng& rng) : FloatTurn(rng.next()) {}
 
   float cosine, sine;

@@ -1,5 +1,5 @@
-// What a table must hold to be looked up: arrays, their axes and their ranges. Every function throws Error
-// that names the attribute, array or axis; from_parts() of table_parts.h adds the file.
+// This file checks what a table must hold to be looked up: arrays, their axes and their ranges. Every
+// function throws Error that names the attribute, array or axis; from_parts() of table_parts.h adds the file.
 #pragma once
 
 #include <span>
@@ -13,17 +13,18 @@ std::string name_of(Symmetry symmetry);
 
 void require_finite(const ArrayView& array);
 
-// The array of that name, if its axes have those names, it has as many channels and its values are finite.
+// Returns the array of that name, if its axes have those names, it has as many channels and its values are
+// finite.
 NdArray checked_array(const TableParts& parts, const std::string& name,
                       std::span<const char* const> axis_names, std::size_t channels = 3);
 
-// That the symmetry is the roughness's.
+// Checks that the symmetry is the roughness's.
 void check_symmetry(const Table& table);
-// Of the parameters and of a dense table's axes.
+// Checks the ranges of the parameters and of a dense table's axes.
 void check_ranges(const Table& table);
-// Of an array of factors; its axes from `first_cosine` on are pairs of a cosine and an azimuth.
+// Checks the axes of an array of factors; those from `first_cosine` on are pairs of a cosine and an azimuth.
 void check_factor_axes(const Table& table, const NdArray& array, std::size_t first_cosine);
-// That look-ups may locate wi and wo on the same nodes.
+// Checks that look-ups may locate wi and wo on the same nodes.
 void check_same_ends(const NdArray& exchange);
 
 }  // namespace sunbeam::inline v1

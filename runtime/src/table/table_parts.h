@@ -1,5 +1,5 @@
-// The neutral form between a Table and a file: text attributes and named arrays. Checks are in
-// table_checks.h.
+// This file holds the neutral form between a Table and a file: text attributes and named arrays. Checks are
+// in table_checks.h.
 #pragma once
 
 #include <map>
@@ -22,11 +22,11 @@ struct TableParts {
 // or holds a value that is not finite.
 Attributes attributes_of(const TableView& table);
 
-// Checks schema, names, ranks, sizes, finiteness and the content hash before it builds. Throws Error whose
-// message starts with `name`.
+// Builds a table. It checks schema, names, ranks, sizes, finiteness and the content hash before. Throws Error
+// whose message starts with `name`.
 Table from_parts(const TableParts& parts, const std::string& name);
 
-// Axes as text attributes of one array, and back.
+// These write axes as text attributes of one array, and read them back.
 Attributes describe_axes(const std::vector<Axis>& axes);
 std::vector<Axis> parse_axes(const Attributes& attributes, const std::string& array_name);
 

@@ -1,5 +1,5 @@
-// Direction pairs -> table coordinates. The inverse and the Jacobian, which only tests need, are in
-// tests/support/angle_pairs.h.
+// This file turns pairs of directions into table coordinates. The inverse and the Jacobian, which only tests
+// need, are in tests/support/angle_pairs.h.
 //
 // A table has four angular axes, cosines and azimuths (radians): (cos_theta_i, phi_i, cos_theta_o, phi_o).
 // anisotropic: the film is its own mirror image in x and in y. Both directions are mirrored such that wi has
@@ -22,7 +22,7 @@ struct DirectionPair {
   Vec3 wo, wi;
 };
 
-// In [0, 2 pi).
+// Returns the azimuth of a direction, in [0, 2 pi).
 inline double azimuth(const Vec3& w) {
   const double phi = std::atan2(w.y, w.x);
   if (phi >= 0) return phi;
@@ -30,7 +30,7 @@ inline double azimuth(const Vec3& w) {
   return wrapped < 2 * kPi ? wrapped : 0;  // a tiny negative angle would round to 2 pi
 }
 
-// The pair or its mirror image in x, y or both: the one whose wi has x, y >= 0.
+// Returns the pair or its mirror image in x, y or both: the one whose wi has x, y >= 0.
 inline DirectionPair folded(const DirectionPair& pair) {
   const double x = pair.wi.x < 0 ? -1 : 1, y = pair.wi.y < 0 ? -1 : 1;
   return {{x * pair.wo.x, y * pair.wo.y, pair.wo.z}, {std::abs(pair.wi.x), std::abs(pair.wi.y), pair.wi.z}};

@@ -1,4 +1,4 @@
-// One axis of a table: its nodes, and how to find a value between them.
+// This file describes one axis of a table: its nodes, and how to find a value between them.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace sunbeam::inline v1 {
 
-// The nodes that a value between them is made of, and their weights, which add up to 1.
+// Holds the nodes that a value between them is made of, and their weights, which add up to 1.
 struct Stencil {
   std::size_t count = 1;
   std::array<std::size_t, 4> node{};
@@ -34,17 +34,17 @@ struct Axis {
   double high() const { return period > 0 ? nodes.front() + period : nodes.back(); }
   double coordinate(double x) const;
 
-  // Clamps to the first or last node; wraps a periodic axis.
+  // These find x among the nodes. They clamp to the first or last node and wrap a periodic axis.
   Bracket locate(double x) const;
   Stencil stencil(double x) const;
 
-  // Empty if the axis is sound, else what is wrong with it.
+  // Returns an empty text if the axis is sound, else what is wrong with it.
   std::string defect() const;
 
   bool operator==(const Axis&) const = default;
 };
 
-// `count` nodes from `from` to `to`, uniform in the axis coordinate of the given power and origin.
+// Returns `count` nodes from `from` to `to`, uniform in the axis coordinate of the given power and origin.
 std::vector<double> spaced_nodes(double from, double to, std::size_t count, double power = 1,
                                  double origin = 0);
 

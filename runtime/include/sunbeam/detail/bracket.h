@@ -1,4 +1,4 @@
-// Where a number lies between two nodes.
+// This file says where a number lies between two nodes.
 #pragma once
 
 #include <algorithm>
@@ -6,13 +6,13 @@
 
 namespace sunbeam::inline v1 {
 
-// Two neighbouring nodes and the weight of the upper one.
+// Holds two neighbouring nodes and the weight of the upper one.
 struct Bracket {
   std::size_t lower = 0, upper = 0;
   double upper_weight = 0;
 };
 
-// Where a cosine lies among at least two nodes spread evenly over [0, 1]; clamped.
+// Returns where a cosine lies among at least two nodes spread evenly over [0, 1]; it is clamped.
 inline Bracket even_bracket(double cosine, std::size_t nodes) {
   const double x = std::clamp(cosine, 0.0, 1.0) * static_cast<double>(nodes - 1);
   const auto lower = std::min(static_cast<std::size_t>(x), nodes - 2);

@@ -1,6 +1,6 @@
-// The factored encoding of the rest: what walks have to find out about a film over a diffuse base without
-// scattering, once for all wavelengths. bake/factored/arrival.h, returned.h and exchange.h make the arrays,
-// runtime/src/fit/wave_field.h reads them.
+// This file defines the factored encoding of the rest: what walks have to find out about a film over a
+// diffuse base without scattering, once for all wavelengths. bake/factored/arrival.h, returned.h and
+// exchange.h make the arrays, runtime/src/fit/wave_field.h reads them.
 //
 // A film of thickness d at vacuum wavelength lambda acts by d / lambda alone, an absorbing pigment by its
 // optical depth tau there. So the arrays hold no colours and no thickness: one axis of fringe orders serves
@@ -13,9 +13,9 @@
 //        smooth film: A = T(c) exp(-tau/m), closed form,   c cosine of w, m cosine below the film,
 //        rough film:  A = exp(arrival - tau/m~),           m~ = m kept away from 0 by the roughness (but m
 //                                                          itself where light passes straight on);
-// returned = the share of what leaves the base that the film sends back to it through the pigment.
-// The first term of "product" is one visit of the base through facets that do not bend light, exactly there.
-// Colours are rest = sum_k weight_k rest_k. Derivation: docs/reference/table_format.md.
+// returned = the share of what leaves the base that the film sends back to it through the pigment. The first
+// term of "product" is one visit of the base through facets that do not bend light, exactly there. Colours
+// are rest = sum_k weight_k rest_k. docs/reference/table_format.md describes the arrays.
 //
 // fringe_order = 2 n1 d cos_1 / lambda, the phase between successive reflections in the film over 2 pi, at
 // the direction itself for `arrival`, at normal incidence for the other two. At a fixed order A varies slowly
@@ -31,8 +31,8 @@
 
 namespace sunbeam::inline v1 {
 
-// One number a cell. Directions are (cos_theta, phi), phi in [0, pi/2] for an anisotropic film and the one
-// node 0 for an isotropic one.
+// Holds the arrays, with one number a cell. Directions are (cos_theta, phi), phi in [0, pi/2] for an
+// anisotropic film and the one node 0 for an isotropic one.
 struct Factors {
   std::vector<Axis> grid;   // the parameters as the recipe spans them, in the order of kParameterNames
   Wavelengths wavelengths;  // albedo of the base and relative absorption at each, and their colours
@@ -47,13 +47,14 @@ struct Factors {
   bool operator==(const Factors&) const = default;
 };
 
-// Of a direction at cosine c outside, for a film of one nm at a wavelength of one nm.
+// Returns the fringe order of a direction at this cosine outside, for the material's film at a thickness of
+// one nm and a wavelength of one nm.
 double fringe_order(const Material& material, double cosine);
 
-// m~: see above.
+// Returns m~, which is explained above.
 double arrival_cosine(const Material& material, double cosine);
 
-// exp(tau (1/m_i + 1/m_o - 1/(m_i m_o))), at most exp(tau).
+// Returns exp(tau (1/m_i + 1/m_o - 1/(m_i m_o))), which is at most exp(tau).
 double one_visit_of_product(double optical_depth, double m_i, double m_o);
 
 }  // namespace sunbeam::inline v1

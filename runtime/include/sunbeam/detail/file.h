@@ -1,4 +1,5 @@
-// Whole files in and out. Writing never leaves a half-written file behind and never harms an existing one.
+// This file reads and writes whole files. Writing never leaves a half-written file behind and never harms an
+// existing one.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +9,9 @@
 
 namespace sunbeam::inline v1 {
 
-// A file that takes its place only when it is whole: written to a temporary beside `path`, which keep()
-// flushes to disk and renames; without it the temporary is removed. Every function throws Error naming `path`
-// (disk full, unwritable), with an older file there untouched.
+// Writes a file that takes its place only when it is whole. It goes to a temporary beside `path`, which
+// keep() flushes to disk and renames; without keep() the temporary is removed. Every function throws Error
+// naming `path` (disk full, unwritable), with an older file there untouched.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string& path);
@@ -32,16 +33,16 @@ class AtomicFile {
   bool kept_ = false;
 };
 
-// Throws Error if the file cannot be read.
+// Returns the bytes of a file. Throws Error if it cannot be read.
 std::string read_file(const std::string& path);
 
-// An AtomicFile of these bytes.
+// Writes these bytes by an AtomicFile.
 void write_file_atomically(const std::string& path, std::string_view bytes);
 
-// Throws Error unless a file could be created at `path` now. For jobs that write only after long work.
+// Throws Error unless a file could be created at `path` now. It serves jobs that write only after long work.
 void require_writable(const std::string& path);
 
-// Lower-case extension with its dot, "" if none.
+// Returns the lower-case extension with its dot, "" if there is none.
 std::string extension(const std::string& path);
 
 }  // namespace sunbeam::inline v1

@@ -1,4 +1,4 @@
-// 128-bit content hash (XXH3) as 32 hexadecimal digits.
+// Returns a 128-bit content hash (XXH3) as 32 hexadecimal digits.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@ namespace sunbeam::inline v1 {
 
 std::string content_hash(std::string_view bytes);
 
-// The same hash of bytes that come piece by piece.
+// Makes the same hash of bytes that come piece by piece.
 class ContentHash {
  public:
   ContentHash();

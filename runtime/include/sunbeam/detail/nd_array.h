@@ -1,5 +1,5 @@
-// A dense array of colours or of single numbers over named axes, with interpolation along each: the one
-// in-memory form of everything a table holds.
+// This file holds dense arrays of colours or of single numbers over named axes, with interpolation along
+// each. They are the one in-memory form of everything a table holds.
 #pragma once
 
 #include <array>
@@ -15,10 +15,10 @@ namespace sunbeam::inline v1 {
 
 enum class Precision { half_float, single_float };
 
-// How values are rounded on disk; in memory they are floats that already have that rounding.
+// Rounds a value as it is rounded on disk; in memory values are floats that already have that rounding.
 float round_to(Precision precision, double value);
 
-// An array without its values: its name, axes and precision, and where a cell lies.
+// Describes an array without its values: its name, axes and precision, and where a cell lies.
 class ArrayShape {
  public:
   static constexpr std::size_t kMaxRank = 8;
@@ -35,7 +35,8 @@ class ArrayShape {
   std::size_t cells() const { return cells_; }  // colours or numbers
   bool empty() const { return cells_ == 0; }
 
-  // Distance in cells between neighbours along axis k: row-major, the last axis runs fastest.
+  // Returns the distance in cells between neighbours along axis k. Arrays are row-major: the last axis runs
+  // fastest.
   std::size_t stride(std::size_t k) const { return strides_[k]; }
 
   bool operator==(const ArrayShape&) const = default;
@@ -58,22 +59,22 @@ class NdArray : public ArrayShape {
   NdArray(std::string name, std::vector<Axis> axes, Precision precision, std::size_t channels = 3)
       : NdArray(ArrayShape(std::move(name), std::move(axes), precision, channels)) {}
 
-  // Values, channels() a cell.
+  // These give the values, channels() a cell.
   std::span<const float> values() const { return values_; }
   std::span<float> values() { return values_; }
-  // A single number is the same in every channel.
+  // Returns the value of a cell. A single number is the same in every channel.
   Rgb get(std::size_t cell) const {
     if (channels() == 1) return Rgb(values_[cell]);
     return {values_[3 * cell], values_[3 * cell + 1], values_[3 * cell + 2]};
   }
-  // Rounds to the precision of the array; -0 becomes 0 so that every file form keeps it. Of a single number
-  // it takes the first channel.
+  // Sets the value of a cell, rounded to the precision of the array; -0 becomes 0 so that every file form
+  // keeps it. Of a single number it takes the first channel.
   void set(std::size_t cell, const Rgb& value);
 
-  // At x (one number an axis), clamped to the axes.
+  // Returns the value at x (one number an axis), clamped to the axes.
   Rgb interpolate(std::span<const double> x) const;
 
-  // The array over the trailing axes with the leading ones fixed at x.
+  // Returns the array over the trailing axes with the leading ones fixed at x.
   NdArray slice(std::span<const double> x) const;
 
   bool operator==(const NdArray&) const = default;

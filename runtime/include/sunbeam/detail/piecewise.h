@@ -1,4 +1,4 @@
-// Piecewise-constant densities on [0, 1): sample, pdf and inverse.
+// This file holds piecewise-constant densities on [0, 1), with sample, pdf and inverse.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ class PiecewiseConstant {
  public:
   PiecewiseConstant() = default;
 
-  // Density proportional to `weights` (finite, >= 0) over equal bins; all zero means uniform.
+  // Makes the density proportional to `weights` (finite, >= 0) over equal bins; all zero means uniform.
   explicit PiecewiseConstant(std::span<const double> weights) : cdf_(weights.size() + 1, 0.0) {
     for (std::size_t i = 0; i < weights.size(); ++i) cdf_[i + 1] = cdf_[i] + weights[i];
     integral_ = cdf_.back() / static_cast<double>(size());
@@ -23,7 +23,7 @@ class PiecewiseConstant {
 
   std::size_t size() const { return cdf_.size() - 1; }
 
-  // Integral of the unnormalised weights over [0, 1).
+  // Returns the integral of the unnormalised weights over [0, 1).
   double integral() const { return integral_; }
 
   double sample(double u) const {

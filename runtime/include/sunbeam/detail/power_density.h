@@ -1,5 +1,5 @@
-// A density over the hemisphere between two powers of the cosine, drawn without the library's pow: exponents
-// are 2^j - 1, whose inverse is j roots.
+// This density over the hemisphere mixes two powers of the cosine and is drawn without the library's pow:
+// exponents are 2^j - 1, whose inverse is j roots.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace sunbeam::inline v1 {
 
 class PowerDensity {
  public:
-  // Near cos^exponent, exponent >= 1 (more than 15 counts as 15).
+  // Makes a density near cos^exponent, exponent >= 1 (more than 15 counts as 15).
   explicit PowerDensity(float exponent) {
     const float next = exponent + 1;
     level_ = next < 4 ? 1 : next < 8 ? 2 : 3;
@@ -19,14 +19,14 @@ class PowerDensity {
     upper_ = std::min(std::max(next / lower - 1, 0.0f), 1.0f);
   }
 
-  // Cosine, > 0.
+  // Draws a cosine, > 0.
   double sample(Rng& rng) const {
     const int roots = level_ + (rng.uniform() < double{upper_} ? 1 : 0);
     double x = 1 - rng.uniform();
     for (int k = 0; k < roots; ++k) x = std::sqrt(x);
     return x;
   }
-  // 1/sr, uniform in azimuth.
+  // Returns the density, 1/sr, of directions that are uniform in azimuth.
   float pdf(float cosine) const {
     const float c2 = cosine * cosine, c4 = c2 * c2;
     const float to_level = level_ == 1 ? 1 : level_ == 2 ? c2 : c4 * c2;  // cos^(2^j - 2)

@@ -3,8 +3,8 @@
 
 namespace sunbeam::inline v1 {
 
-// How a look-up folds the film over wavelengths: with the fastest instructions of this processor, or with
-// bits that are the same on every one, for errors that a table states. Both agree to 1e-6 of white.
+// Says how a look-up folds the film over wavelengths: with the fastest instructions of this processor, or
+// with bits that are the same on every one, for errors that a table states. Both agree to 1e-6 of white.
 enum class Arithmetic { fastest, reproducible };
 
 // Says whether the environment variable SUNBEAM_KERNELS is "baseline": every such kernel then runs the one

@@ -1,6 +1,6 @@
-// The closed frame that the remainder of a dense table stands in (sunbeam/table.h), at one parameter point.
-// The bake encodes (bake/dense/nodes.h) and look-ups decode (runtime/src/rest/dense_rest.h). Both are here
-// since each is the inverse of the other.
+// This file holds the closed frame that the remainder of a dense table stands in (sunbeam/table.h), at one
+// parameter point. The bake encodes (bake/dense/nodes.h) and look-ups decode (runtime/src/rest/dense_rest.h).
+// Both are here since each is the inverse of the other.
 #pragma once
 
 #include <memory>
@@ -18,17 +18,18 @@ class RestFrame {
   // them.
   static constexpr double kLargestRemainder = 60000;
 
-  // `first_visit` as in Table: empty for rgb3.
+  // Makes the frame of a material. `first_visit` is that of Table: empty for rgb3.
   explicit RestFrame(const Material& material, const NdArray& first_visit = {});
 
-  // The same over another material; allocates nothing and lives no longer than this one.
+  // Returns the same frame over another material; it allocates nothing and lives no longer than this one.
   RestFrame over(const Material& material) const;
 
   Rgb decode(const Rgb& remainder, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
   Rgb encode(const Rgb& rest, double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
 
  private:
-  // F at even steps of x / (1 + x) from 0 to 1: no search, no root; none for rgb3.
+  // Holds F at even steps of x / (1 + x) from 0 to 1, so that a look-up needs no search and no root; there is
+  // none for rgb3.
   using FirstVisit = std::shared_ptr<const std::vector<Rgb>>;
   RestFrame(const Material& material, FirstVisit first_visit);
 

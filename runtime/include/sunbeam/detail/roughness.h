@@ -1,4 +1,4 @@
-// GGX roughness along the two tangents of the shading frame.
+// This file holds the GGX roughness along the two tangents of the shading frame.
 #pragma once
 
 namespace sunbeam::inline v1 {
@@ -13,7 +13,7 @@ struct Roughness {
   constexpr Roughness(double alpha = 0) : u(alpha), v(alpha) {}
   constexpr Roughness(double alpha_u, double alpha_v) : u(alpha_u), v(alpha_v) {}
 
-  // Smooth (0, 0), or both kMinRoughness to 1.
+  // Says whether it is smooth (0, 0), or both lie between kMinRoughness and 1.
   constexpr bool is_allowed() const {
     const auto is_rough = [](double alpha) { return alpha >= kMinRoughness && alpha <= 1; };
     return (u == 0 && v == 0) || (is_rough(u) && is_rough(v));

@@ -1,5 +1,6 @@
-// A table whose values may lie elsewhere than in memory, as its writers and its verification read it. A Table
-// is one; so is a finished bake of a dense table, whose values are made of its blocks a few nodes at a time.
+// A TableView is a table whose values may lie elsewhere than in memory, as its writers and its verification
+// read it. A Table is one; so is a finished bake of a dense table, whose values are made of its blocks a few
+// nodes at a time.
 #pragma once
 
 #include <functional>
@@ -14,7 +15,7 @@
 
 namespace sunbeam::inline v1 {
 
-// One array of a table.
+// Gives access to one array of a table.
 class ArrayView {
  public:
   // Returns the values of parameter nodes [first, first + count), in the order and the rounding of
@@ -25,7 +26,7 @@ class ArrayView {
   ArrayView(ArrayShape shape, NodeValues values) : shape_(std::move(shape)), values_(std::move(values)) {}
 
   const ArrayShape& shape() const { return shape_; }
-  // Of an array over the parameters that is not in memory.
+  // Returns such values of an array over the parameters that is not in memory.
   std::vector<float> at_nodes(std::size_t first, std::size_t count) const { return values_(first, count); }
   // Calls visit(values) for all of the array, piece by piece from its first cell on.
   void visit(const std::function<void(std::span<const float> values)>& visit) const;
@@ -40,7 +41,7 @@ class TableView {
  public:
   TableView(const Table& table);  // refers to the table
   TableView(Table&& table);
-  // Of a dense table: `head` is all of it but the arrays `remainder` and `rest_stderr`.
+  // Views a dense table: `head` is all of it but the arrays `remainder` and `rest_stderr`.
   TableView(Table&& head, ArrayView remainder, ArrayView rest_stderr);
 
   // Holds every attribute and all arrays that are in memory.
@@ -48,7 +49,7 @@ class TableView {
   bool is_in_memory() const { return nodes_.empty(); }
   const Axis& parameter_axis(std::size_t k) const;
 
-  // The arrays that the table has, in the order of its file.
+  // Returns the arrays that the table has, in the order of its file.
   std::vector<ArrayView> arrays() const;
 
   // Both return a table in memory; what they have to make for that is kept in `room`. around() is what one

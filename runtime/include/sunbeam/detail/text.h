@@ -1,4 +1,4 @@
-// Numbers as text that reads back to the same bits.
+// This file turns numbers into text that reads back to the same bits, and text into numbers.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace sunbeam::inline v1 {
 
-// Shortest decimal text that reads back exactly.
+// Returns the shortest decimal text that reads back exactly.
 std::string to_text(double value);
 std::string to_text(const std::vector<double>& values);  // separated by single spaces
 
-// Whole text must be a number ("nan" and "inf" parse); false if not.
+// Reads a number, which must be the whole text ("nan" and "inf" parse). Returns false if it is not.
 bool parse_number(std::string_view text, double& value);
 
 std::vector<std::string> split(std::string_view text, char separator);

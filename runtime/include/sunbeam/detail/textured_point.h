@@ -1,4 +1,5 @@
-// What a textured table knows of one parameter point (textured_table.h); the library's own business.
+// This file holds what a textured table knows of one parameter point (textured_table.h). It is the library's
+// own business.
 #pragma once
 
 #include <algorithm>
@@ -10,21 +11,21 @@
 
 namespace sunbeam::inline v1 {
 
-// The path of light between reflections in a rough film, over that at normal incidence; 1 for a smooth one,
-// whose fringes are not in L.
+// Returns the path of light between reflections in a rough film, over that at normal incidence; it is 1 for a
+// smooth one, whose fringes are not in L.
 double textured_path(const Material& material, double cosine);
 
-// The closed forms of the film that one table has for all points: c~, the path in the film, and what m~ needs
-// of the material. Cosines are squared here.
+// Evaluates the closed forms of the film that one table has for all points: c~, the path in the film, and
+// what m~ needs of the material. Cosines are squared here.
 struct FilmCosines {
   explicit FilmCosines(const Material& material);
 
-  // c~^2.
+  // Returns c~^2.
   float film_cosine_squared(float c) const { return film_scale * c * c + film_offset; }
-  // textured_path(), as fringe_order() in factors.h has it.
+  // Returns the square of textured_path(), as fringe_order() in factors.h has it.
   float path_squared(float c) const { return std::max(path_scale * c * c + path_offset, least_path); }
 
-  // How the transmittance falls towards grazing, after Schlick: enough to take its pole from L.
+  // Returns how the transmittance falls towards grazing, after Schlick. It is enough to take the pole from L.
   static float passing(float film_cosine) {
     const float x = 1 - film_cosine, x2 = x * x;
     return 1 - x2 * x2 * x;
@@ -37,16 +38,16 @@ struct FilmCosines {
   double exterior_ior, pigment_thickness_nm;
 };
 
-// The closed forms of the pigment at one base IOR and optical depth: m~ and m.
+// Evaluates the closed forms of the pigment at one base IOR and optical depth: m~ and m.
 struct PigmentCosines {
   PigmentCosines(const FilmCosines& material, double base_ior, double optical_depth);
 
-  // m~^2.
+  // Returns m~^2.
   float pigment_cosine_squared(float c) const {
     return std::max(below_scale * c * c + below_offset, 0.0f) + least_below;
   }
 
-  // Below the film, kept above 0.
+  // Returns the cosine below the film, kept above 0.
   float cosine_below(float c) const {
     return std::sqrt(std::max(below_scale * c * c + below_offset, 1e-12f));
   }
@@ -55,7 +56,7 @@ struct PigmentCosines {
   float optical_depth;
 };
 
-// Where the base IOR and the absorption lie among the nodes of L, and the thickness.
+// Says where the base IOR and the absorption lie among the nodes of L, and holds the thickness.
 struct ParameterTaps {
   float thickness_nm;
   std::size_t row;              // the lowest of four neighbours, at the first path and cosine

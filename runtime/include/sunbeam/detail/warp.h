@@ -1,5 +1,5 @@
-// Maps from the unit square to directions.
-// Densities are per solid angle (1/sr); directions lie in the hemisphere z > 0.
+// This file maps the unit square to directions. Densities are per solid angle (1/sr); directions lie in the
+// hemisphere z > 0.
 #pragma once
 
 #include "sunbeam/core/vec.h"
@@ -10,7 +10,7 @@ struct Point2 {
   double x = 0, y = 0;
 };
 
-// Cosine and sine of 2 pi u, u in [0, 1), to 1e-15: by polynomials, in a third of the library's time.
+// Computes cosine and sine of 2 pi u, u in [0, 1), to 1e-15, by polynomials in a third of the library's time.
 struct Turn {
   explicit Turn(double u) {
     const int quarter = static_cast<int>(4 * u + 0.5);
@@ -35,7 +35,7 @@ struct Turn {
   double cosine, sine;
 };
 
-// The cosine-weighted hemisphere, z > 0, and its density.
+// These draw from the cosine-weighted hemisphere, z > 0, and return its density, 1/sr.
 inline Vec3 sample_cosine(const Point2& u) {
   const double radius = std::sqrt(u.x);
   const Turn turn(u.y);

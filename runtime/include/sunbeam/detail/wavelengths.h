@@ -1,4 +1,5 @@
-// The wavelengths that a live model carries, the base at each of them, and how they fold into linear RGB.
+// This file holds the wavelengths that a live model carries, the base at each of them, and how they fold into
+// linear RGB.
 #pragma once
 
 #include <algorithm>
@@ -28,14 +29,14 @@ struct Wavelengths {
     return sum;
   }
 
-  // Three of `values` (one of the lists above) from `first` on, for what works on three at a time; beyond the
-  // end the last is repeated.
+  // Returns three of `values` (one of the lists above) from `first` on, for what works on three at a time;
+  // beyond the end the last is repeated.
   Rgb triple(const std::vector<double>& values, std::size_t first) const {
     const std::size_t last = size() - 1;
     return {values[first], values[std::min(first + 1, last)], values[std::min(first + 2, last)]};
   }
 
-  // The paper's three wavelengths, 650, 510 and 475 nm, taken as linear R, G, B; albedo likewise.
+  // Returns the paper's three wavelengths, 650, 510 and 475 nm, taken as linear R, G, B; so is the albedo.
   static Wavelengths rgb3(const Material& material) {
     return {{650, 510, 475},
             {material.albedo.r, material.albedo.g, material.albedo.b},
@@ -43,7 +44,7 @@ struct Wavelengths {
             {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   }
 
-  // One wavelength in every channel, with the albedo of the first.
+  // Returns one wavelength for every channel, with the albedo of the first.
   static Wavelengths monochromatic(const Material& material, double nm) {
     return {{nm}, {material.albedo.r}, {1}, {Rgb(1)}};
   }

@@ -10,7 +10,8 @@
 #include "sunbeam/core/rng.h"
 #include "sunbeam/core/vec.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // A direction that sample() has drawn, and what a path carries on along it.
 struct BsdfSample {
@@ -71,4 +72,5 @@ class Bsdf {
   virtual bool is_isotropic() const { return false; }
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

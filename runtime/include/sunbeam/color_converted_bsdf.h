@@ -10,7 +10,8 @@
 #include "sunbeam/bsdf.h"
 #include "sunbeam/core/color_space.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // `Inner` is any Bsdf; it is kept by value.
 template <class Inner>
@@ -47,4 +48,5 @@ class ColorConvertedBsdf final : public Bsdf {
   ColorMatrix matrix_;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -12,7 +12,8 @@
 #include "sunbeam/core/vec.h"
 #include "sunbeam/detail/roughness.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Says how light passes the film. "straight" does not bend it, and one reflectance serves both sides.
 // "refract" bends it from the exterior to the base medium; from below the film is met reversed, with total
@@ -98,4 +99,5 @@ struct Interval {
 };
 Interval allowed_interval(std::string_view key);
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

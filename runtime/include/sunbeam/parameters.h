@@ -5,7 +5,8 @@
 
 #include "sunbeam/material.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // The names of the parameters, in the order of a table's axes.
 inline constexpr std::array<const char*, 3> kParameterNames = {"film_thickness_nm", "base_ior",
@@ -27,4 +28,5 @@ struct Parameters {
   std::array<double, 3> values() const { return {film_thickness_nm, base_ior, absorption_per_nm}; }
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

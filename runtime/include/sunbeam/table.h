@@ -43,7 +43,8 @@
 #include "sunbeam/material.h"
 #include "sunbeam/parameters.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 inline constexpr int kTableSchemaVersion = 2;
 
@@ -112,4 +113,5 @@ struct Table {
   bool operator==(const Table& other) const;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

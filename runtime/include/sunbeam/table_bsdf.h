@@ -16,7 +16,8 @@
 #include "sunbeam/bsdf.h"
 #include "sunbeam/table.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 class BoundTable;
 
@@ -58,4 +59,5 @@ class TableBsdf final : public Bsdf {
   std::shared_ptr<const BoundTable> bound_;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -11,7 +11,8 @@
 #include "sunbeam/detail/table_view.h"
 #include "sunbeam/table.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 Table load_table_exr(const std::string& path);
 Table parse_table_exr(std::string_view bytes, const std::string& name);  // from memory; `name` for messages
@@ -19,4 +20,5 @@ std::string table_exr_bytes(const TableView& table);  // the same table gives th
 // Writes a table; one that is not in memory is written a few nodes at a time.
 void save_table_exr(const TableView& table, const std::string& path);
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -6,7 +6,8 @@
 
 #include "sunbeam/table_io.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 Table load_table_vdb(const std::string& path);
 Table parse_table_vdb(std::string_view bytes, const std::string& name);
@@ -20,4 +21,5 @@ std::string table_bytes(const Table& table, const std::string& path);
 // Throws Error unless the extension is one of the two.
 void require_table_extension(const std::string& path);
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -48,7 +48,8 @@
 #include "sunbeam/table.h"
 #include "sunbeam/table_bsdf.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 struct TexturedData;
 enum class TexturedKind;
@@ -111,4 +112,5 @@ class TexturedTable {
   std::shared_ptr<const TexturedData> data_;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 BoundAxis::BoundAxis(const Axis& axis, std::size_t stride)
     : power_(axis.power), period_(axis.period), origin_(axis.origin), first_(axis.nodes.front()) {
@@ -43,4 +44,5 @@ BoundAxis::BoundAxis(const Axis& axis, std::size_t stride)
   }
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

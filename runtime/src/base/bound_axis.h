@@ -12,7 +12,8 @@
 
 #include "sunbeam/detail/axis.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 class BoundAxis {
  public:
@@ -78,4 +79,5 @@ class BoundAxis {
   std::array<std::uint16_t, kGuideCells + 1> guide_{};  // the interval in which each even cell begins
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -4,7 +4,8 @@
 #include "runtime/src/base/lanes.h"
 #include "sunbeam/core/vec.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 using Color4 = Floats4;
 
@@ -70,4 +71,5 @@ T lerp(const T* nodes, const EvenPosition& at) {
   return nodes[at.lower] + at.upper_weight * (nodes[at.lower + 1] - nodes[at.lower]);
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -4,7 +4,8 @@
 
 #include "sunbeam/core/error.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 struct Chromaticity {
@@ -102,4 +103,5 @@ Rgb ClipAccount::clip(const Rgb& color, ColorSpace space) {
   return result.clipped;
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -2,7 +2,8 @@
 // vanish.
 #pragma once
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 #if defined(__GNUC__) && !defined(SUNBEAM_PORTABLE)
 #define SUNBEAM_ALWAYS_INLINE [[gnu::always_inline]] inline
@@ -16,4 +17,5 @@ inline void prefetch(const void* address) { __builtin_prefetch(address); }
 inline void prefetch(const void*) {}
 #endif
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -5,7 +5,8 @@
 #include "runtime/src/base/color4.h"
 #include "sunbeam/detail/axis.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 class EvenAxis {
  public:
@@ -40,4 +41,5 @@ class EvenAxis {
   int nodes_;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

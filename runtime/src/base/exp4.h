@@ -3,7 +3,8 @@
 
 #include "runtime/src/base/color4.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Returns exp with a relative error of 3e-7. Arguments are kept within [-87, 87], so the result is a normal
 // number.
@@ -21,4 +22,5 @@ inline Color4 exp4(const Color4& x) {
   return bits_as<Color4>(bits_as<Ints4>(series) + (convert<Ints4>(power) << 23));
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

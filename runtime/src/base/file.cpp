@@ -12,7 +12,8 @@
 #include "runtime/src/base/file_sync.h"
 #include "sunbeam/core/error.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 AtomicFile::AtomicFile(const std::string& path)
     : target_(path), path_(path + ".tmp" + std::to_string(std::random_device()())) {
@@ -82,4 +83,5 @@ std::string extension(const std::string& path) {
   return ext;
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

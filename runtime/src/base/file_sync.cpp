@@ -7,7 +7,8 @@
 #include <cerrno>
 #endif
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 #ifdef SUNBEAM_PORTABLE
 
@@ -27,4 +28,5 @@ bool sync_to_disk(const std::string& path) {
 
 #endif
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

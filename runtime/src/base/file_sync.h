@@ -3,10 +3,12 @@
 
 #include <string>
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Returns when the closed file at `path` is on the disk: true, or false with errno if it cannot be. With
 // SUNBEAM_PORTABLE the system writes it when it likes.
 bool sync_to_disk(const std::string& path);
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

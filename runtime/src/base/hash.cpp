@@ -5,7 +5,8 @@
 
 #include <cstdio>
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 std::string digits(const XXH128_hash_t& hash) {
@@ -32,4 +33,5 @@ void ContentHash::add(std::string_view bytes) {
 
 std::string ContentHash::text() const { return digits(XXH3_128bits_digest(&state_->stream)); }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -14,7 +14,8 @@
 #include <emmintrin.h>
 #endif
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 #ifdef SUNBEAM_PORTABLE
 
@@ -146,4 +147,5 @@ SUNBEAM_ALWAYS_INLINE void square_root(const Doubles4& x, Doubles4& root) {
 
 #endif
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

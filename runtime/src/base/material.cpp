@@ -6,7 +6,8 @@
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/text.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 struct NumericKey {
@@ -166,4 +167,5 @@ void set_from_text(Material& material, std::string_view key, const std::string& 
   }
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

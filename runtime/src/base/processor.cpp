@@ -6,7 +6,8 @@
 
 #include "sunbeam/core/error.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 bool baseline_is_forced() {
   const char* const found = std::getenv("SUNBEAM_KERNELS");
@@ -17,4 +18,5 @@ bool baseline_is_forced() {
   return wish == "baseline";
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

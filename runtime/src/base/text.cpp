@@ -3,7 +3,8 @@
 #include <charconv>
 #include <system_error>
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 std::string to_text(double value) {
   char buffer[64];
@@ -38,4 +39,5 @@ std::vector<std::string> split(std::string_view text, char separator) {
   }
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -6,7 +6,8 @@
 
 #include "runtime/src/film/film_spectrum.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 struct FilmMedia {
   double exterior_ior, film_ior, base_ior, thickness_nm;
@@ -31,4 +32,5 @@ extern const FilmKernels kAvx512FilmKernels;
 // Returns those that this processor runs, the fastest last.
 std::span<const FilmKernels* const> supported_film_kernels();
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

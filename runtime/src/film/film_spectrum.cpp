@@ -10,7 +10,8 @@
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/processor.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 double with_12_bits(double x) {
@@ -125,4 +126,5 @@ void FilmSpectrum::powers(double thickness_nm, double base_ior, float cosine,
         static_cast<float>(film.transmittance(double{wavelengths_.per_high[k]} + wavelengths_.per_low[k]));
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -22,7 +22,8 @@
 #include "sunbeam/detail/processor.h"
 #include "sunbeam/detail/wavelengths.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 struct FloatRgb {
   float r = 0, g = 0, b = 0;
@@ -74,4 +75,5 @@ class FilmSpectrum {
   const FilmKernels* kernels_;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -14,7 +14,8 @@
 #include "runtime/src/base/lanes.h"
 #include "runtime/src/film/film_kernels.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 constexpr int kCosines = 4;
@@ -183,4 +184,5 @@ constexpr FilmKernels film_kernels(const char* name) {
 }
 
 }  // namespace
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -2,7 +2,8 @@
 
 #include <functional>
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 constexpr double kLeastCosine = 1e-4;
@@ -71,4 +72,5 @@ AnisotropicSeparable fit_anisotropic(const BoundWaves& waves) {
   return fit;
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

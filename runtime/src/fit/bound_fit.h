@@ -5,9 +5,11 @@
 #include "runtime/src/fit/bound_waves.h"
 #include "runtime/src/rest/separable.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 Separable fit_isotropic(const BoundWaves& waves);
 AnisotropicSeparable fit_anisotropic(const BoundWaves& waves);
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

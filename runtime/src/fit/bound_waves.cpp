@@ -1,6 +1,7 @@
 #include "runtime/src/fit/bound_waves.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 // Gauss-Legendre over cosines: 1e-4 of what passes a film of a dozen fringe orders.
@@ -112,4 +113,5 @@ Rgb BoundWaves::rest(const Row& i, const Direction& o) const {
   return sum;
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -8,7 +8,8 @@
 #include "runtime/src/film/film_spectrum.h"
 #include "runtime/src/fit/wave_field.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 class BoundWaves {
  public:
@@ -58,4 +59,5 @@ class BoundWaves {
   std::vector<std::vector<float>> exchange_;  // of each wavelength, (direction, direction)
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -2,7 +2,8 @@
 
 #include "runtime/src/rest/dense_rest.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 constexpr int kNodes = 4;  // of each parameter
@@ -61,4 +62,5 @@ float DenseAlbedos::at(const Parameters& at, float root) const {
   return low + d.upper_weight * (high - low);
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -8,7 +8,8 @@
 #include "runtime/src/base/even_axis.h"
 #include "sunbeam/table.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 class DenseAlbedos {
  public:
@@ -28,4 +29,5 @@ class DenseAlbedos {
   std::vector<float> nodes_;  // (parameters, root of the cosine)
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

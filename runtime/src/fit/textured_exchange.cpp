@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 TexturedExchange::TexturedExchange(const NdArray& exchange, const TexturedWaves& waves,
                                    const TexturedMedia& media, const TexturedFactor& factor,
@@ -98,4 +99,5 @@ double TexturedExchange::most_leaving(const std::vector<float>& brackets, const 
   return most;
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

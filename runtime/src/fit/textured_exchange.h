@@ -4,7 +4,8 @@
 
 #include "runtime/src/fit/textured_factor.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Finds the values of X. What it is made of must outlive it.
 class TexturedExchange {
@@ -41,4 +42,5 @@ class TexturedExchange {
   std::vector<std::size_t> brackets_of_;      // which of them a wavelength has
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

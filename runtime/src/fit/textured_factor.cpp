@@ -4,7 +4,8 @@
 
 #include "sunbeam/detail/textured_point.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 constexpr double kLeastShare = 0.01;  // of the channels' mean: a folded colour may pass through 0
@@ -154,4 +155,5 @@ double TexturedFactor::first_chance(const FloatRgb& r, double rest, int c) const
   return std::clamp(of_first / (of_first + of_rest + kLeastValue), kLeastChance, 1 - kLeastChance);
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

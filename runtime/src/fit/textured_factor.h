@@ -5,7 +5,8 @@
 #include "runtime/src/fit/textured_waves.h"
 #include "runtime/src/rest/textured_media.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Folds B and finds L. What it is made of must outlive it.
 class TexturedFactor {
@@ -46,4 +47,5 @@ class TexturedFactor {
   std::vector<Rgb> norms_;                  // (thickness): fold(g A* A*)
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -2,7 +2,8 @@
 
 #include "runtime/src/fit/textured_exchange.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 // The table's material at nodes of the base IOR and the absorption.
@@ -37,4 +38,5 @@ TexturedFit fit_textured(const Table& table, const TexturedGrid& grid, const Tex
   return fit;
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -7,7 +7,8 @@
 #include "runtime/src/rest/textured_grid.h"
 #include "runtime/src/rest/textured_media.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 struct TexturedFit {
   std::vector<Color4> nodes;  // L, as TexturedGrid::row() says
@@ -16,4 +17,5 @@ struct TexturedFit {
 
 TexturedFit fit_textured(const Table& table, const TexturedGrid& grid, const TexturedMedia& media);
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -3,7 +3,8 @@
 #include "runtime/src/base/exp4.h"
 #include "sunbeam/detail/textured_point.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 void exponentiate(std::vector<float>& values) {
@@ -148,4 +149,5 @@ void TexturedWaves::let_pass(ThicknessAt thickness_at, std::vector<float>& share
   }
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

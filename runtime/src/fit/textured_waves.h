@@ -9,7 +9,8 @@
 #include "runtime/src/fit/wave_field.h"
 #include "runtime/src/rest/textured_grid.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Says where a fringe order lies among the nodes of an array, whose axis is even or has one node. There are
 // always four nodes, so that loops have no branch; arrays carry kMoreOrders rows more.
@@ -95,4 +96,5 @@ class TexturedWaves {
   std::vector<std::vector<float>> returned_;  // of each wavelength with path "sum": (fringe_order)
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

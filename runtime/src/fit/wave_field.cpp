@@ -1,6 +1,7 @@
 #include "runtime/src/fit/wave_field.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 WaveField::WaveField(const Table& table, const Material& material)
     : factors_(table.factors), material_(material) {
@@ -42,4 +43,5 @@ double bracket(double depth, double m_i, double m_o, std::span<const double> row
   return sum;
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -14,7 +14,8 @@
 
 #include "sunbeam/table.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 class WaveField {
  public:
@@ -63,4 +64,5 @@ void contract(std::span<const float> exchange, std::span<const DirectionTap> fro
 double bracket(double depth, double m_i, double m_o, std::span<const double> row,
                std::span<const DirectionTap> to);
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -2,7 +2,8 @@
 
 #include "sunbeam/detail/ggx.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 constexpr int kViewerAzimuths = 4;     // of wo in a quadrant, which sampling data are averaged over
@@ -105,4 +106,5 @@ BoundSampling::BoundSampling(const BoundValues& values) {
   }
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

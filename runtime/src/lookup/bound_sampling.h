@@ -6,7 +6,8 @@
 #include "runtime/src/sampling/cosine_rows.h"
 #include "runtime/src/sampling/facet_cells.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 struct BoundSampling {
   explicit BoundSampling(const BoundValues& values);
@@ -19,4 +20,5 @@ struct BoundSampling {
   FacetCells first;  // empty but for an isotropic rough film
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -2,7 +2,8 @@
 
 #include "runtime/src/lookup/bound_sampling.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 constexpr int kNormalNodes = 96;  // of an albedo's quadrature over visible normals, each way
@@ -188,4 +189,5 @@ void BoundTable::eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f
   std::copy_n(values.begin(), left, f.begin() + static_cast<std::ptrdiff_t>(last));
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -12,7 +12,8 @@
 #include "runtime/src/sampling/facets.h"
 #include "sunbeam/table_bsdf.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 class BoundTable {
  public:
@@ -83,4 +84,5 @@ class BoundTable {
   FacetCells facet_cells_;  // of an isotropic rough film
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

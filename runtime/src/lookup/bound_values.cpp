@@ -5,7 +5,8 @@
 #include "sunbeam/detail/ggx.h"
 #include "sunbeam/detail/text.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 constexpr int kAlbedoBins = 32;
@@ -109,4 +110,5 @@ Rgb BoundValues::rest_albedo(const Vec3& wo) const {
   return total;
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -10,7 +10,8 @@
 #include "runtime/src/rest/separable.h"
 #include "sunbeam/table.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 struct BoundValues {
   // `material` is that of the table with the parameters of the point, which lie in the grid.
@@ -42,4 +43,5 @@ struct BoundValues {
   std::variant<std::monostate, DenseRest, AnisotropicSeparable> other;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -4,7 +4,8 @@
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/text.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 Parameters checked(const Table& table, const Parameters& parameters, OutsideGrid outside) {
@@ -77,4 +78,5 @@ std::optional<BsdfSample> TableBsdf::sample(const Vec3& wo, Rng& rng) const {
   return bound_->sample(wo, rng);
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -11,7 +11,8 @@
 #include "runtime/src/sampling/facets.h"
 #include "sunbeam/textured_table.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // The kinds are: factored, isotropic and of path "sum"; any other factored one; dense.
 enum class TexturedKind { plain, general, dense };
@@ -214,4 +215,5 @@ class TexturedLookup<TexturedKind::dense> {
   const TexturedData& data_;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

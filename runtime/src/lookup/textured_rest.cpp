@@ -2,7 +2,8 @@
 
 #include "runtime/src/fit/textured_fit.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 TexturedRest::TexturedRest(const Table& table, Arithmetic arithmetic)
     : grid_(table), media_(table, arithmetic), stride_(static_cast<int>(grid_.path_stride())) {
   for (int k = 0; k < 4; ++k) corner_[k] = static_cast<int>(grid_.row(k >> 1, k & 1));
@@ -60,4 +61,5 @@ ParameterTaps TexturedRest::parameter_taps(const Parameters& at) const {
       {(1 - n_upper) * (1 - s_upper), (1 - n_upper) * s_upper, n_upper * (1 - s_upper), n_upper * s_upper}};
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

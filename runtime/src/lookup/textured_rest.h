@@ -10,7 +10,8 @@
 #include "runtime/src/rest/textured_media.h"
 #include "sunbeam/detail/textured_point.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 class TexturedRest {
  public:
@@ -104,4 +105,5 @@ class TexturedRest {
   std::vector<Color4> pairs_;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

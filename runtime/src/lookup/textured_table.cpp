@@ -4,7 +4,8 @@
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/text.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 // By how much the rest falls with log cos(theta_i), where most of it leaves.
@@ -110,4 +111,5 @@ EvalAndSample TexturedTable::At::eval_and_sample(const Vec3& wo, const Vec3& wi,
   });
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

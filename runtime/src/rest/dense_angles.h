@@ -9,7 +9,8 @@
 #include "sunbeam/detail/angles.h"
 #include "sunbeam/detail/nd_array.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 class DenseAngles {
  public:
@@ -69,4 +70,5 @@ class DenseAngles {
   bool has_azimuth_;  // else those axes have one node each, and finding the azimuths would be in vain
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -1,6 +1,7 @@
 #include "runtime/src/rest/dense_rest.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 constexpr std::size_t kCurveNodes = 1025;  // linear between: towards grazing T is curved
@@ -150,4 +151,5 @@ Rgb DenseRest::AzimuthMean::operator()(double cos_i) const {
   return rest_.decoded(at_, remainder, cos_i, cos_o_);
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -10,7 +10,8 @@
 #include "sunbeam/detail/rest_frame.h"
 #include "sunbeam/table.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // These are the axes (film_thickness_nm, base_ior, absorption_per_nm) or (film_thickness_nm, base_ior,
 // cos_theta).
@@ -86,4 +87,5 @@ class DenseRest {
   NdArray stderr_;                   // over the four angles
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

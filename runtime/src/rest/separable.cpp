@@ -2,7 +2,8 @@
 
 #include "runtime/src/base/compiler.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 // The azimuth folded into [0, pi/2], over pi/2.
@@ -43,4 +44,5 @@ Color4 AnisotropicSeparable::rest(const Vec3& wo, const Vec3& wi) const {
   return separable_rest(scale(cos_o, phi_o), scale(cos_i, phi_i), ratio);
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

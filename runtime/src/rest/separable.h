@@ -17,7 +17,8 @@
 
 #include "runtime/src/base/color4.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Evaluates the equation above, of two values of S and one of Q.
 inline Color4 separable_rest(const Color4& scale_o, const Color4& scale_i, const Color4& ratio) {
@@ -57,4 +58,5 @@ struct AnisotropicSeparable {
   Color4 scale(float cosine, float phi) const;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -4,7 +4,8 @@
 
 #include "sunbeam/detail/textured_point.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 constexpr double kNodesPerFringe = 12;  // of the shortest wavelength
@@ -46,4 +47,5 @@ double TexturedGrid::cosine(int c) {
   return std::max(root * root, kLeastCosine);
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -7,7 +7,8 @@
 #include "runtime/src/base/even_axis.h"
 #include "sunbeam/table.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 struct TexturedGrid {
   explicit TexturedGrid(const Table& table);
@@ -57,4 +58,5 @@ struct TexturedGrid {
   int pair_cosines, pair_phis;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -1,6 +1,7 @@
 #include "runtime/src/rest/textured_media.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 // The weighted mean of the pigment's spectrum in each channel, and over channels.
@@ -25,4 +26,5 @@ TexturedMedia::TexturedMedia(const Table& table, Arithmetic arithmetic)
       total(FilmWavelengths(table.factors.wavelengths).total_weight),
       absorption(mean_absorption(table.factors.wavelengths)) {}
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

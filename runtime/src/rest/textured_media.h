@@ -6,7 +6,8 @@
 #include "runtime/src/film/film_spectrum.h"
 #include "sunbeam/table.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 struct TexturedMedia {
   TexturedMedia(const Table& table, Arithmetic arithmetic);
@@ -23,4 +24,5 @@ struct TexturedMedia {
   Color4 absorption;  // a of each channel, and their mean
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

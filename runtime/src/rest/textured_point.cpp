@@ -2,7 +2,8 @@
 
 #include "sunbeam/detail/factors.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 constexpr double kLeastFrame = 0.05, kLeastSmoothFrame = 1e-3;  // of m~
@@ -35,4 +36,5 @@ PigmentCosines::PigmentCosines(const FilmCosines& material, double base_ior, dou
   below_offset = static_cast<float>(1 - ratio2);
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -10,7 +10,8 @@
 #include <span>
 #include <vector>
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 template <int kBins>
 class AliasTable {
@@ -73,4 +74,5 @@ class AliasTable {
   std::array<std::uint32_t, kBins> bins_{};  // a cache line holds sixteen
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -10,7 +10,8 @@
 #include "runtime/src/sampling/alias_table.h"
 #include "runtime/src/sampling/facets.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 class CosineRows {
  public:
@@ -56,4 +57,5 @@ class CosineRows {
   std::vector<float> density_;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -13,7 +13,8 @@
 #include "runtime/src/sampling/alias_table.h"
 #include "runtime/src/sampling/facets.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 class FacetCells {
  public:
@@ -91,4 +92,5 @@ inline const std::array<float, FacetCells::kTurns / 2 - 1> FacetCells::kEdges = 
   return edges;
 }();
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -13,7 +13,8 @@
 #include "sunbeam/core/rng.h"
 #include "sunbeam/detail/roughness.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Draws a number in [0, 1) of 24 random bits.
 inline float uniform_float(Rng& rng) { return static_cast<float>(rng.next() >> 8) * 0x1p-24f; }
@@ -150,4 +151,5 @@ struct FacetLights {
   }
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -8,7 +8,8 @@
 #include "sunbeam/core/rng.h"
 #include "sunbeam/core/vec.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Computes cosine and sine to 2e-7: those of a table, turned on by at most half a step, where short series
 // do. Nothing waits long for anything else, and there is no choice that a processor would have to guess.
@@ -48,4 +49,5 @@ inline const std::array<FloatTurn::Middle, FloatTurn::kSteps> FloatTurn::kMiddle
   return middles;
 }();
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

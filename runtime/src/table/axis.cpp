@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 double Axis::coordinate(double x) const {
   if (power == 1) return x - origin;
@@ -74,4 +75,5 @@ std::vector<double> spaced_nodes(double from, double to, std::size_t count, doub
   return nodes;
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

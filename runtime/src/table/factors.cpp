@@ -1,6 +1,7 @@
 #include "sunbeam/detail/factors.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 // Refraction into a film of lower index may have no cosine; the order only has to go on smoothly.
@@ -26,4 +27,5 @@ double one_visit_of_product(double optical_depth, double m_i, double m_o) {
   return std::exp(optical_depth * (1 - (1 / i - 1) * (1 / o - 1)));
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -6,7 +6,8 @@
 
 #include "sunbeam/core/error.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 constexpr std::size_t kMaxCells = std::size_t{1} << 32;
@@ -69,4 +70,5 @@ NdArray NdArray::slice(std::span<const double> x) const {
   return result;
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

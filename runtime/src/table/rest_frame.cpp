@@ -2,7 +2,8 @@
 
 #include <utility>
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 constexpr double kLargestDecay = 12;
@@ -114,4 +115,5 @@ Rgb RestFrame::encode(const Rgb& rest, double cos_i, double cos_o, const Rgb& t_
   return transform(remainder, [](double x) { return std::clamp(x, -kLargestRemainder, kLargestRemainder); });
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

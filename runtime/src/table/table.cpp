@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 Rgb Table::transmittance(const std::array<double, 3>& x) const {
   if (film_transmittance.empty()) return Rgb(1) - film_reflectance.interpolate(x);
@@ -36,4 +37,5 @@ bool Table::operator==(const Table& other) const {
                     [](const NdArray* a, const NdArray* b) { return *a == *b; });
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

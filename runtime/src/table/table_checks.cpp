@@ -5,7 +5,8 @@
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/text.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 const NdArray* find(const TableParts& parts, const std::string& name) {
@@ -135,4 +136,5 @@ void check_same_ends(const NdArray& exchange) {
   }
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -7,7 +7,8 @@
 
 #include "runtime/src/table/table_parts.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 std::string name_of(Symmetry symmetry);
 
@@ -27,4 +28,5 @@ void check_factor_axes(const Table& table, const NdArray& array, std::size_t fir
 // Checks that look-ups may locate wi and wo on the same nodes.
 void check_same_ends(const NdArray& exchange);
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

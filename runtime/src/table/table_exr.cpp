@@ -22,7 +22,8 @@
 #include "sunbeam/detail/file.h"
 #include "sunbeam/table_io.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 struct ImageSize {
@@ -224,4 +225,5 @@ void save_table_exr(const TableView& table, const std::string& path) {
   file.keep();
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

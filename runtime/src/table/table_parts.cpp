@@ -8,7 +8,8 @@
 #include "sunbeam/detail/hash.h"
 #include "sunbeam/detail/text.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 constexpr std::array<const char*, 3> kFilmAxes = {"film_thickness_nm", "base_ior", "cos_theta"};
@@ -245,10 +246,8 @@ std::vector<Axis> parse_axes(const Attributes& attributes, const std::string& ar
 Attributes attributes_of(const TableView& view) {
   const Table& table = view.head();
   const std::vector<ArrayView> arrays = view.arrays();
-  const auto has = [&](const char* name) {
-    return std::ranges::any_of(arrays, [&](const ArrayView& array) { return array.shape().name() == name; });
-  };
-  if (!table.is_factored() && !(has("film_reflectance") && has("remainder") && has("rest_stderr")))
+  const bool lacks_nodes = view.is_in_memory() && (table.remainder.empty() || table.rest_stderr.empty());
+  if (!table.is_factored() && (table.film_reflectance.empty() || lacks_nodes))
     throw Error("an empty table cannot be written");
   for (const ArrayView& array : arrays) require_finite(array);
   Attributes attributes = table.info;
@@ -276,4 +275,5 @@ Table from_parts(const TableParts& parts, const std::string& name) {
   }
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

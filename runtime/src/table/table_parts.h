@@ -9,7 +9,8 @@
 #include "sunbeam/table.h"
 #include "sunbeam/table_io.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 using Attributes = std::map<std::string, std::string>;
 
@@ -32,4 +33,5 @@ std::vector<Axis> parse_axes(const Attributes& attributes, const std::string& ar
 
 inline constexpr const char* kAttributePrefix = "sunbeam.";
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -24,7 +24,8 @@
 #include "sunbeam/detail/hash.h"
 #include "sunbeam/table_io.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 constexpr std::size_t kUuidOffset = 21, kUuidSize = 36, kVersionDigit = 14;
@@ -233,4 +234,5 @@ void save_table(const TableView& table, const std::string& path) {
   save_table_vdb(table.whole(room), path);
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 constexpr std::size_t kLastParameter = kParameterNames.size() - 1;
@@ -100,4 +101,5 @@ void TableView::add_info(const std::map<std::string, std::string>& info) {
   head_ = std::make_shared<const Table>(std::move(table));
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -12,7 +12,8 @@
 
 #include "sunbeam/core/vec.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // rec709: ITU-R BT.709-6 primaries, white x, y = 0.3127, 0.3290.
 // acescg: AP1 primaries, white x, y = 0.32168, 0.33767 (AMPAS S-2014-004).
@@ -76,4 +77,5 @@ struct ClipAccount {
   Rgb clip(const Rgb& color, ColorSpace space);
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

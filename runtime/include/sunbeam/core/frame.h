@@ -4,7 +4,8 @@
 
 #include "sunbeam/core/vec.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 struct Frame {
   Vec3 tangent, bitangent, normal;
@@ -36,4 +37,5 @@ struct Frame {
   }
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

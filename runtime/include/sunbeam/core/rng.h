@@ -5,7 +5,8 @@
 
 #include <cstdint>
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 class Rng {
  public:
@@ -38,4 +39,5 @@ class Rng {
   std::uint64_t state_, increment_;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

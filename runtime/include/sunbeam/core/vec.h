@@ -5,7 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kInvPi = std::numbers::inv_pi;
@@ -76,4 +77,5 @@ constexpr Rgb transform(const Rgb& a, F f) {
 constexpr double square(double x) { return x * x; }
 constexpr double lerp(double t, double a, double b) { return a + t * (b - a); }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -10,7 +10,8 @@
 
 #include "sunbeam/core/vec.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 enum class Symmetry { isotropic, anisotropic };
 
@@ -45,4 +46,5 @@ inline AngleCoordinates to_coordinates(Symmetry symmetry, const DirectionPair& p
   return {pair.wi.z, 0, pair.wo.z, std::min(between, 2 * kPi - between)};
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -8,7 +8,8 @@
 
 #include "sunbeam/detail/bracket.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Holds the nodes that a value between them is made of, and their weights, which add up to 1.
 struct Stencil {
@@ -48,4 +49,5 @@ struct Axis {
 std::vector<double> spaced_nodes(double from, double to, std::size_t count, double power = 1,
                                  double origin = 0);
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

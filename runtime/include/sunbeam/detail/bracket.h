@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Holds two neighbouring nodes and the weight of the upper one.
 struct Bracket {
@@ -19,4 +20,5 @@ inline Bracket even_bracket(double cosine, std::size_t nodes) {
   return {lower, lower + 1, x - static_cast<double>(lower)};
 }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -29,7 +29,8 @@
 #include "sunbeam/detail/wavelengths.h"
 #include "sunbeam/material.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Holds the arrays, with one number a cell. Directions are (cos_theta, phi), phi in [0, pi/2] for an
 // anisotropic film and the one node 0 for an isotropic one.
@@ -57,4 +58,5 @@ double arrival_cosine(const Material& material, double cosine);
 // Returns exp(tau (1/m_i + 1/m_o - 1/(m_i m_o))), which is at most exp(tau).
 double one_visit_of_product(double optical_depth, double m_i, double m_o);
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

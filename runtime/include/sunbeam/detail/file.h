@@ -7,7 +7,8 @@
 #include <string>
 #include <string_view>
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Writes a file that takes its place only when it is whole. It goes to a temporary beside `path`, which
 // keep() flushes to disk and renames; without keep() the temporary is removed. Every function throws Error
@@ -45,4 +46,5 @@ void require_writable(const std::string& path);
 // Returns the lower-case extension with its dot, "" if there is none.
 std::string extension(const std::string& path);
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

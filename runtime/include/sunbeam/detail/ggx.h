@@ -16,7 +16,8 @@
 #include "sunbeam/detail/roughness.h"
 #include "sunbeam/detail/warp.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 class Ggx {
  public:
@@ -100,4 +101,5 @@ class Ggx {
   double u_, v_, u2_, v2_, uv3_;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -5,7 +5,8 @@
 #include <string>
 #include <string_view>
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 std::string content_hash(std::string_view bytes);
 
@@ -25,4 +26,5 @@ class ContentHash {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -11,7 +11,8 @@
 #include "sunbeam/core/vec.h"
 #include "sunbeam/detail/axis.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 enum class Precision { half_float, single_float };
 
@@ -83,4 +84,5 @@ class NdArray : public ArrayShape {
   std::vector<float> values_;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

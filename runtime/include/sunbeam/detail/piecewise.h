@@ -6,7 +6,8 @@
 #include <span>
 #include <vector>
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 class PiecewiseConstant {
  public:
@@ -58,4 +59,5 @@ class PiecewiseConstant {
   double integral_ = 0;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -7,7 +7,8 @@
 #include "sunbeam/core/rng.h"
 #include "sunbeam/core/vec.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 class PowerDensity {
  public:
@@ -41,4 +42,5 @@ class PowerDensity {
   float upper_ = 0;  // chance of the next level
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -1,7 +1,8 @@
 // This file says which instructions kernels may use that are compiled for several instruction sets.
 #pragma once
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Says how a look-up folds the film over wavelengths: with the fastest instructions of this processor, or
 // with bits that are the same on every one, for errors that a table states. Both agree to 1e-6 of white.
@@ -12,4 +13,5 @@ enum class Arithmetic { fastest, reproducible };
 // Error if the variable holds anything else but "" or "fastest".
 bool baseline_is_forced();
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -9,7 +9,8 @@
 #include "sunbeam/detail/nd_array.h"
 #include "sunbeam/material.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 class RestFrame {
  public:
@@ -51,4 +52,5 @@ class RestFrame {
   FirstVisit first_visit_;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -1,7 +1,8 @@
 // This file holds the GGX roughness along the two tangents of the shading frame.
 #pragma once
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Below this roughness a film would be numerically a mirror.
 inline constexpr double kMinRoughness = 1e-3;
@@ -22,4 +23,5 @@ struct Roughness {
   constexpr bool operator==(const Roughness&) const = default;
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

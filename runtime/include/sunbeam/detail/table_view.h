@@ -13,7 +13,8 @@
 
 #include "sunbeam/table.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Gives access to one array of a table.
 class ArrayView {
@@ -66,4 +67,5 @@ class TableView {
   std::vector<ArrayView> nodes_;  // remainder and rest_stderr, unless the table is in memory
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

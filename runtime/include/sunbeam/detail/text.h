@@ -5,7 +5,8 @@
 #include <string_view>
 #include <vector>
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Returns the shortest decimal text that reads back exactly.
 std::string to_text(double value);
@@ -16,4 +17,5 @@ bool parse_number(std::string_view text, double& value);
 
 std::vector<std::string> split(std::string_view text, char separator);
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

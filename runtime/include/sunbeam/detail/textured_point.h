@@ -9,7 +9,8 @@
 
 #include "sunbeam/material.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Returns the path of light between reflections in a rough film, over that at normal incidence; it is 1 for a
 // smooth one, whose fringes are not in L.
@@ -64,4 +65,5 @@ struct ParameterTaps {
   std::array<float, 4> weight;  // of the neighbours: base IOR is the higher bit, absorption the lower
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

@@ -4,7 +4,8 @@
 
 #include "sunbeam/core/vec.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 struct Point2 {
   double x = 0, y = 0;
@@ -43,4 +44,5 @@ inline Vec3 sample_cosine(const Point2& u) {
 }
 inline double cosine_pdf(double cos_theta) { return std::max(0.0, cos_theta) * kInvPi; }
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

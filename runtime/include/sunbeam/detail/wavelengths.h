@@ -9,7 +9,8 @@
 
 #include "sunbeam/material.h"
 
-namespace sunbeam::inline v1 {
+namespace sunbeam {
+inline namespace v1 {
 
 // Live models keep what they carry on the stack.
 inline constexpr std::size_t kMostWavelengths = 64;
@@ -50,4 +51,5 @@ struct Wavelengths {
   }
 };
 
-}  // namespace sunbeam::inline v1
+}  // namespace v1
+}  // namespace sunbeam

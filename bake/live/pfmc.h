@@ -7,7 +7,7 @@
 // Unidirectional: walks from wi connect to wo through the film at every visit of the base (unidirectional.h).
 // Bidirectional: walks from both sides, every connection, weighted by the balance heuristic
 // (bidirectional.h). Both are unbiased and exact in expectation for every film, smooth or rough, straight or
-// refracting (but for what general_walk_parts.h leaves out). Reciprocity of the crossing turns leaving into
+// refracting (but for what facets_part.h leaves out). Reciprocity of the crossing turns leaving into
 // entering, which leaves one factor (n0/n2)^2 on the whole rest.
 //
 // For plain materials (Material::is_plain) one estimate is the mean of kLanes stratified walks, worked on
@@ -47,9 +47,7 @@ class Pfmc {
     return family_ == Family::plain ? std::numeric_limits<std::size_t>::max() : walk::GeneralWalk::kMostExits;
   }
 
-  int walks_per_estimate() const {
-    return family_ == Family::general ? walk::GeneralWalk::kWalks : walk::kLanes;
-  }
+  int walks_per_estimate() const { return family_ == Family::general ? walk::kGeneralWalks : walk::kLanes; }
 
   // Returns the film's reflectance from outside. It is exact.
   Rgb film_reflectance(double cos_exterior) const;

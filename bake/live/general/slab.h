@@ -42,4 +42,21 @@ struct Slab {
   }
 };
 
+// A straight leg of a walk between film and base, to the next scattering event or to either border.
+struct Leg {
+  double cosine;  // of its travel with the normal, without sign
+  double length;
+  bool scatters;
+};
+inline Leg next_leg(const Slab& slab, double depth, const Vec3& travel, Rng& rng) {
+  const double cosine = std::max(std::abs(travel.z), 1e-12);
+  const double to_border = (travel.z < 0 ? 1 - depth : depth) / cosine;
+  const double free_path = slab.scatters() ? slab.sample_free_path(rng) : to_border;
+  return {cosine, std::min(free_path, to_border), free_path < to_border};
+}
+// Where the leg ends, if it scatters.
+inline double depth_after(const Leg& leg, double depth, const Vec3& travel) {
+  return std::clamp(depth - leg.length * travel.z, 0.0, 1.0);
+}
+
 }  // namespace sunbeam::walk

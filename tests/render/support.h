@@ -10,22 +10,14 @@
 #include "runtime/tracer/render.h"
 #include "runtime/tracer/scene.h"
 #include "sunbeam/core/error.h"
+#include "tests/support/error_of.h"
 #include "tests/support/scratch_folder.h"
 
 namespace sunbeam {
 
-inline Scene scene_from(const std::string& text) { return read_scene(ConfigTable::parse(text, "test.toml")); }
+using test::error_of;
 
-// The message of the Error that `action` throws; "" if it throws none.
-template <class Action>
-std::string error_of(Action action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
+inline Scene scene_from(const std::string& text) { return read_scene(ConfigTable::parse(text, "test.toml")); }
 
 // A plane of albedo 0.5 at z = 0, seen from the side through a pixel so narrow (0.02 degrees, 2 mm) that all
 // its samples meet the origin as far as lighting is concerned.

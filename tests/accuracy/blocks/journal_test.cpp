@@ -5,9 +5,12 @@
 #include "bake/blocks/parts.h"
 #include "sunbeam/core/error.h"
 #include "tests/accuracy/support.h"
+#include "tests/support/error_of.h"
 
 namespace sunbeam {
 namespace {
+
+using test::error_of;
 
 const BakeIdentity kThis{kToolVersion, "hash", "[material]\n", "dense", 1, 0, 1};
 
@@ -15,15 +18,6 @@ BakeIdentity of_another_version() {
   BakeIdentity identity = kThis;
   identity.version = "0.0.0";
   return identity;
-}
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 class OfAnotherVersion : public testing::Test {
@@ -38,7 +32,7 @@ class OfAnotherVersion : public testing::Test {
 };
 
 TEST_F(OfAnotherVersion, WorkIsNotContinued) {
-  const auto message = message_of([&] { Journal::open(path_, kThis); });
+  const auto message = error_of([&] { Journal::open(path_, kThis); });
   EXPECT_EQ(message,
             path_ + ": holds the work of another bake: the tool's version 0.0.0 against " + kToolVersion);
   EXPECT_EQ(Journal::read(path_)->blocks(), 1U);
@@ -46,7 +40,7 @@ TEST_F(OfAnotherVersion, WorkIsNotContinued) {
 }
 
 TEST_F(OfAnotherVersion, PartsAreNotMerged) {
-  EXPECT_EQ(message_of([&] { Parts parts({path_}); }),
+  EXPECT_EQ(error_of([&] { Parts parts({path_}); }),
             path_ + ": is of version 0.0.0 of the tool; this is " + kToolVersion);
 }
 

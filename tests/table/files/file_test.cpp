@@ -8,25 +8,18 @@
 #include <csignal>
 #include <fstream>
 
+#include "tests/support/error_of.h"
 #include "tests/table/support.h"
 
 namespace sunbeam {
 namespace {
 
+using test::error_of;
+
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-template <class F>
-std::string error_of(F f) {
-  try {
-    f();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
-}
 
 // While it lives, no file may grow beyond `bytes`: what a full disk is to the writer.
 class FileSizeLimit {

@@ -7,10 +7,13 @@
 #include "sunbeam/detail/file.h"
 #include "sunbeam/detail/warp.h"
 #include "sunbeam/table_bsdf.h"
+#include "tests/support/error_of.h"
 #include "tests/table/support.h"
 
 namespace sunbeam {
 namespace {
+
+using test::error_of;
 
 using test::forms;
 using test::small_table;
@@ -132,16 +135,6 @@ TEST(TableFile, SaveAndLoadByExtension) {
   save_table_vdb(table, folder.file("c.vdb"));
   EXPECT_TRUE(load_table_exr(folder.file("c.exr")) == load_table_vdb(folder.file("c.vdb")));
   EXPECT_EQ(folder.names().size(), 6u);  // and nothing temporary
-}
-
-template <class F>
-std::string error_of(F f) {
-  try {
-    f();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
 }
 
 TEST(TableFile, RefusesOtherNames) {

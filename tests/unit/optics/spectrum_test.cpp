@@ -6,9 +6,12 @@
 #include <numeric>
 
 #include "sunbeam/core/error.h"
+#include "tests/support/error_of.h"
 
 namespace sunbeam {
 namespace {
+
+using test::error_of;
 
 const SpectralCurve kOrange{{400, 0.05}, {550, 0.1}, {600, 0.9}, {700, 0.95}};
 
@@ -21,16 +24,6 @@ Material thin(const Rgb& albedo = Rgb(0.5)) {
 Spectrum full(ColorSpace space = ColorSpace::acescg, double path = 2000,
               AbsorptionShape absorption = AbsorptionShape::flat()) {
   return Spectrum(Illuminant::d65, space, path, std::move(absorption));
-}
-
-template <class F>
-std::string error_of(F f) {
-  try {
-    f();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
 }
 
 void expect_near(const Rgb& a, const Rgb& b, double tolerance) {

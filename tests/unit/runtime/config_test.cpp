@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include "sunbeam/core/error.h"
+#include "tests/support/error_of.h"
 
 namespace sunbeam {
 namespace {
+
+using test::error_of;
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -26,16 +29,6 @@ ConfigTable config(const std::vector<std::string>& overrides = {}) {
   return ConfigTable::parse(kText, "skin.toml", overrides);
 }
 ConfigTable film(const std::vector<std::string>& overrides = {}) { return config(overrides).table("film"); }
-
-template <class F>
-std::string message_of(F f) {
-  try {
-    f();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 TEST(Config, ReadsEveryType) {
   const ConfigTable table = film();
@@ -64,33 +57,33 @@ TEST(Config, FallbacksServeMissingKeysOnly) {
 
 // A bad value is refused even where a fallback is given. Line 3 holds `thickness`.
 TEST(Config, RangeErrorNamesFileLineKeyValueAndRange) {
-  const auto message = message_of([] { film().number("thickness", {0, 200}, 100); });
+  const auto message = error_of([] { film().number("thickness", {0, 200}, 100); });
   EXPECT_THAT(message, StartsWith("skin.toml:3: key 'film.thickness'"));
   EXPECT_THAT(message, AllOf(HasSubstr("300.5"), HasSubstr("0 to 200")));
   EXPECT_EQ(film().number("thickness", {300.5, 300.5}), 300.5);  // closed interval
 }
 
 TEST(Config, TypeErrors) {
-  EXPECT_THAT(message_of([] {
+  EXPECT_THAT(error_of([] {
                 film().number("mode", {0, 1});
               }),
               AllOf(StartsWith("skin.toml:6: key 'film.mode'"), HasSubstr("found a string")));
-  EXPECT_THAT(message_of([] { film().number("smooth", {0, 1}); }), HasSubstr("found a boolean"));
-  EXPECT_THAT(message_of([] { film().string("grey"); }), HasSubstr("key 'film.grey'"));
-  EXPECT_THAT(message_of([] { film().boolean("grey", true); }), HasSubstr("true or false"));
-  EXPECT_THAT(message_of([] { film().integer("thickness", 0, 1000); }), HasSubstr("whole number"));
-  EXPECT_THAT(message_of([] { film().numbers("grey", {}); }), HasSubstr("list of numbers"));
-  EXPECT_THAT(message_of([] { film().rgb("mode", {}); }), HasSubstr("found a string"));
-  EXPECT_THAT(message_of([] { config().table("title"); }), HasSubstr("a section"));
-  EXPECT_THAT(message_of([] { config().tables("film"); }), HasSubstr("[[film]]"));
+  EXPECT_THAT(error_of([] { film().number("smooth", {0, 1}); }), HasSubstr("found a boolean"));
+  EXPECT_THAT(error_of([] { film().string("grey"); }), HasSubstr("key 'film.grey'"));
+  EXPECT_THAT(error_of([] { film().boolean("grey", true); }), HasSubstr("true or false"));
+  EXPECT_THAT(error_of([] { film().integer("thickness", 0, 1000); }), HasSubstr("whole number"));
+  EXPECT_THAT(error_of([] { film().numbers("grey", {}); }), HasSubstr("list of numbers"));
+  EXPECT_THAT(error_of([] { film().rgb("mode", {}); }), HasSubstr("found a string"));
+  EXPECT_THAT(error_of([] { config().table("title"); }), HasSubstr("a section"));
+  EXPECT_THAT(error_of([] { config().tables("film"); }), HasSubstr("[[film]]"));
 }
 
 TEST(Config, MissingKeyIsNamed) {
-  EXPECT_THAT(message_of([] {
+  EXPECT_THAT(error_of([] {
                 film().number("absent", {0, 1});
               }),
               AllOf(HasSubstr("key 'film.absent'"), HasSubstr("missing"), HasSubstr("0 to 1")));
-  EXPECT_THAT(message_of([] { film().string("absent"); }), HasSubstr("missing"));
+  EXPECT_THAT(error_of([] { film().string("absent"); }), HasSubstr("missing"));
 }
 
 TEST(Config, NotFiniteIsRefused) {
@@ -101,17 +94,17 @@ TEST(Config, NotFiniteIsRefused) {
 }
 
 TEST(Config, ListErrorNamesTheElement) {
-  EXPECT_THAT(message_of([] {
+  EXPECT_THAT(error_of([] {
                 film().numbers("colour", {0, 0.25});
               }),
               AllOf(StartsWith("skin.toml:7:"), HasSubstr("element 3"), HasSubstr("0.3")));
   const auto short_list = ConfigTable::parse("c = [1, 2]", "f", {});
-  EXPECT_THAT(message_of([&] { short_list.rgb("c", {}); }), HasSubstr("found 2 numbers"));
-  EXPECT_THAT(message_of([&] { short_list.vec3("c"); }), HasSubstr("found 2 numbers"));
+  EXPECT_THAT(error_of([&] { short_list.rgb("c", {}); }), HasSubstr("found 2 numbers"));
+  EXPECT_THAT(error_of([&] { short_list.vec3("c"); }), HasSubstr("found 2 numbers"));
 }
 
 TEST(Config, ChoiceErrorListsWhatIsAllowed) {
-  EXPECT_THAT(message_of([] {
+  EXPECT_THAT(error_of([] {
                 film().choice("mode", {"product", "straight"});
               }),
               AllOf(HasSubstr("\"sum\""), HasSubstr("\"product\", \"straight\"")));
@@ -122,14 +115,14 @@ TEST(Config, UnknownKeyNamesTheNearest) {
   const auto table = root.table("film");
   table.number("thickness", {}, 1);
   table.number("count", {}, 1);
-  EXPECT_THAT(message_of([&] { root.finish(); }),
+  EXPECT_THAT(error_of([&] { root.finish(); }),
               AllOf(StartsWith("f.toml:2: key 'film.thicknes'"), HasSubstr("'thickness'")));
 }
 
 TEST(Config, UnknownSectionIsRefused) {
   const auto root = ConfigTable::parse("[flim]\nx = 1\n", "f.toml", {});
   root.table("film");
-  EXPECT_THAT(message_of([&] { root.finish(); }), AllOf(HasSubstr("'flim'"), HasSubstr("'film'")));
+  EXPECT_THAT(error_of([&] { root.finish(); }), AllOf(HasSubstr("'flim'"), HasSubstr("'film'")));
 }
 
 TEST(Config, FinishPassesWhenAllIsAsked) {
@@ -148,7 +141,7 @@ TEST(Config, ListsOfTables) {
   EXPECT_EQ(lights[1].number("power", {}), 2);
   EXPECT_EQ(lights[0].number("power", {}), 1);
   EXPECT_TRUE(root.tables("absent").empty());
-  EXPECT_THAT(message_of([&] { root.finish(); }), HasSubstr("f.toml:5: key 'light[1].radios'"));
+  EXPECT_THAT(error_of([&] { root.finish(); }), HasSubstr("f.toml:5: key 'light[1].radios'"));
 }
 
 TEST(Config, OverridesReplaceAddAndKeepTypes) {
@@ -170,12 +163,12 @@ TEST(Config, OverridesReachIntoLists) {
   EXPECT_EQ(lights[0].table("sub").integer("y", 0, 9), 3);
   for (const char* bad :
        {"light[2].x=1", "light[-1].x=1", "light[].x=1", "light[0.x=1", "light.x=1", "lamp[0].x=1"})
-    EXPECT_THAT(message_of([&] { ConfigTable::parse(text, "f.toml", {bad}); }), HasSubstr("is not a section"))
+    EXPECT_THAT(error_of([&] { ConfigTable::parse(text, "f.toml", {bad}); }), HasSubstr("is not a section"))
         << bad;
 }
 
 TEST(Config, OverriddenValueIsCheckedToo) {
-  EXPECT_THAT(message_of([] {
+  EXPECT_THAT(error_of([] {
                 film({"film.thickness=-1"}).number("thickness", {0, 9});
               }),
               AllOf(HasSubstr("film.thickness"), HasSubstr("-1")));
@@ -183,17 +176,17 @@ TEST(Config, OverriddenValueIsCheckedToo) {
 
 TEST(Config, MalformedOverridesAreRefused) {
   for (const char* bad : {"film.thickness", "thickness=3", ".x=3", "=", "", "a=b.c"})
-    EXPECT_THAT(message_of([&] { config({bad}); }), HasSubstr("section.key=value")) << bad;
-  EXPECT_THAT(message_of([] { config({"title.x=1"}); }), HasSubstr("'title' is not a section"));
+    EXPECT_THAT(error_of([&] { config({bad}); }), HasSubstr("section.key=value")) << bad;
+  EXPECT_THAT(error_of([] { config({"title.x=1"}); }), HasSubstr("'title' is not a section"));
 }
 
 TEST(Config, SyntaxErrorNamesFileAndLine) {
-  EXPECT_THAT(message_of([] { ConfigTable::parse("a = 1\nb = = 2\n", "bad.toml"); }),
+  EXPECT_THAT(error_of([] { ConfigTable::parse("a = 1\nb = = 2\n", "bad.toml"); }),
               StartsWith("bad.toml:2: not valid TOML"));
 }
 
 TEST(Config, MissingFileAndFolder) {
-  EXPECT_THAT(message_of([] { ConfigTable::load("/nowhere/x.toml"); }), StartsWith("/nowhere/x.toml: "));
+  EXPECT_THAT(error_of([] { ConfigTable::load("/nowhere/x.toml"); }), StartsWith("/nowhere/x.toml: "));
   EXPECT_THROW(ConfigTable::load("/"), Error);
 }
 

@@ -6,12 +6,14 @@ namespace sunbeam {
 inline namespace v1 {
 
 BoundAxis::BoundAxis(const Axis& axis, std::size_t stride)
-    : power_(axis.power), period_(axis.period), origin_(axis.origin), first_(axis.nodes.front()) {
+    : power_(axis.power),
+      period_(axis.period),
+      origin_(axis.origin),
+      first_(axis.nodes.front()),
+      softness_(axis.softness) {
   const std::size_t n = axis.size();
   const bool wraps = axis.period > 0 && n > 1;
   const std::size_t most = axis.is_cubic ? 4 : 2;
-  const std::size_t count = std::min(n, most);
-  count_ = static_cast<int>(count);
   const auto coordinate = [&](std::size_t node) {
     return axis.coordinate(axis.nodes[node % n] + (node < n ? 0 : axis.period));
   };
@@ -22,7 +24,11 @@ BoundAxis::BoundAxis(const Axis& axis, std::size_t stride)
   for (std::size_t k = 0; k < intervals_.size(); ++k) {
     Interval& interval = intervals_[k];
     interval.begin = coordinate(k);
-    const std::size_t first = count > 2 ? std::min(k > 0 ? k - 1 : 0, n - count) : k;
+    const Axis::Run run = axis.smooth_run(k);
+    const std::size_t count = std::min(run.count, most);
+    interval.count = static_cast<int>(count);
+    const std::size_t first =
+        count > 2 ? std::clamp(k, run.first + 1, run.first + run.count - count + 1) - 1 : k;
     for (std::size_t i = 0; i < count; ++i) {
       interval.offset[i] = static_cast<int>((first + i) % n * stride);
       interval.u[i] = static_cast<float>(coordinate(first + i) - interval.begin);

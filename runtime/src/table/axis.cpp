@@ -7,11 +7,29 @@ namespace sunbeam {
 inline namespace v1 {
 
 double Axis::coordinate(double x) const {
-  if (power == 1) return x - origin;
-  const double offset = std::max(0.0, x - origin);
-  if (power == 2) return std::sqrt(offset);
-  if (power == 3) return std::cbrt(offset);
-  return std::pow(offset, 1 / power);
+  const double y = x - origin;
+  if (power == 1) return y;
+  if (softness > 0) return y / std::sqrt(std::abs(y) + softness);
+  const double distance = std::abs(y);
+  const double root = power == 2   ? std::sqrt(distance)
+                      : power == 3 ? std::cbrt(distance)
+                                   : std::pow(distance, 1 / power);
+  return std::copysign(root, y);
+}
+
+double Axis::at_coordinate(double u) const {
+  if (power == 1) return origin + u;
+  const double distance = softness > 0 ? std::abs(u) * (std::abs(u) + std::sqrt(u * u + 4 * softness)) / 2
+                                       : std::pow(std::abs(u), power);
+  return origin + std::copysign(distance, u);
+}
+
+Axis::Run Axis::smooth_run(std::size_t lower) const {
+  const bool has_kink = power != 1 && softness == 0 && low() < origin && origin < nodes.back();
+  if (!has_kink) return {0, size()};
+  const auto at = std::lower_bound(nodes.begin(), nodes.end(), origin);
+  const auto kink = static_cast<std::size_t>(at - nodes.begin());
+  return lower < kink ? Run{0, kink + 1} : Run{kink, size() - kink};
 }
 
 Bracket Axis::locate(double x) const {
@@ -34,8 +52,9 @@ Stencil Axis::stencil(double x) const {
   if (at.upper_weight == 0) return {1, {at.lower}, {1}};
   if (!is_cubic) return {2, {at.lower, at.upper}, {1 - at.upper_weight, at.upper_weight}};
   Stencil result;
-  result.count = std::min<std::size_t>(4, size());
-  const std::size_t first = std::min(at.lower > 0 ? at.lower - 1 : 0, size() - result.count);
+  const Run run = smooth_run(at.lower);
+  result.count = std::min<std::size_t>(4, run.count);
+  const std::size_t first = std::clamp(at.lower, run.first + 1, run.first + run.count - result.count + 1) - 1;
   const double u = coordinate(std::clamp(x, low(), high()));
   for (std::size_t k = 0; k < result.count; ++k) {
     result.node[k] = first + k;
@@ -54,14 +73,18 @@ std::string Axis::defect() const {
   if (nodes.empty()) return "has no nodes";
   if (!(power >= 1 && power <= 8)) return "has a power outside 1 to 8";
   if (!(period >= 0) || !std::isfinite(period)) return "has a bad period";
-  if (!std::isfinite(origin) || (power != 1 && !(nodes.front() >= origin)))
-    return "has a node below its origin";
+  if (!std::isfinite(origin)) return "has an origin that is not finite";
+  if (!(softness >= 0) || !std::isfinite(softness) || (softness > 0 && power != 2))
+    return "has a bad softness";
   if (period > 0 && is_cubic) return "is both periodic and cubic";
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (!std::isfinite(nodes[i])) return "has a node that is not finite";
     if (i > 0 && !(nodes[i] > nodes[i - 1])) return "has nodes that do not increase";
   }
   if (period > 0 && nodes.back() >= nodes.front() + period) return "has nodes beyond its period";
+  const bool has_kink = power != 1 && softness == 0 && nodes.front() < origin && origin < nodes.back();
+  if (has_kink && !std::binary_search(nodes.begin(), nodes.end(), origin))
+    return "has its origin between two nodes";
   return {};
 }
 
@@ -71,6 +94,31 @@ std::vector<double> spaced_nodes(double from, double to, std::size_t count, doub
   for (std::size_t i = 1; i < count; ++i)
     nodes[i] =
         origin + std::pow(std::lerp(u0, u1, static_cast<double>(i) / static_cast<double>(count - 1)), power);
+  if (count > 1) nodes.back() = to;
+  return nodes;
+}
+
+std::size_t intervals_below(std::size_t intervals, double below, double above) {
+  // What is below needs more than its share: quantities bend twice there, at the kink and where it moves to.
+  const double share = static_cast<double>(intervals) * below / (below + above);
+  const auto least = intervals * 9 / 20;
+  return std::clamp<std::size_t>(std::max(static_cast<std::size_t>(std::lround(share)), least), 1,
+                                 intervals - 1);
+}
+
+std::vector<double> spaced_nodes(const Axis& axis, double from, double to, std::size_t count) {
+  const double u0 = axis.coordinate(from), u1 = axis.coordinate(to);
+  const std::size_t intervals = count - 1;
+  const bool is_sharp = axis.power != 1 && axis.softness == 0;
+  const std::size_t kink = is_sharp && u0 < 0 && u1 > 0 ? intervals_below(intervals, -u0, u1) : 0;
+  std::vector<double> nodes(count, from);
+  for (std::size_t i = 1; i < count; ++i) {
+    const bool is_below = i < kink;
+    const double begin = kink == 0 || is_below ? u0 : 0, end = is_below ? 0 : u1;
+    const std::size_t first = is_below ? 0 : kink, last = is_below ? kink : intervals;
+    nodes[i] = axis.at_coordinate(
+        std::lerp(begin, end, static_cast<double>(i - first) / static_cast<double>(last - first)));
+  }
   if (count > 1) nodes.back() = to;
   return nodes;
 }

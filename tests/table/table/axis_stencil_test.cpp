@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "runtime/src/base/bound_axis.h"
 #include "sunbeam/core/rng.h"
 #include "sunbeam/detail/axis.h"
 
@@ -127,6 +128,37 @@ TEST(AxisStencil, PeriodicAxesAreNotCubic) {
   EXPECT_EQ(axis.defect(), "");
   axis.period = 6;
   EXPECT_THAT(axis.defect(), HasSubstr("both periodic and cubic"));
+}
+
+// |u| of the signed root has a kink at the origin, which no cubic through both sides would hold.
+TEST(AxisStencil, ReachesNotAcrossAKink) {
+  const Axis axis{"x", "1", {-9, -4, -1, 0, 1, 4, 9}, 2, 0, 0, true};
+  const auto bent = [](double u) { return u < 0 ? 1 - 2 * u + u * u * u : 1 + 5 * u * u; };
+  for (double x = -9; x <= 9; x += 0.37)
+    EXPECT_NEAR(interpolated(axis, x, bent), bent(axis.coordinate(x)), 1e-12) << x;
+  const Axis two{"x", "1", {-1, 0, 1, 4, 9}, 2, 0, 0, true};
+  EXPECT_EQ(two.stencil(-0.5).count, 2u);
+}
+
+// Look-ups find the same nodes with the same weights, on every kind of axis. Weights are floats there.
+TEST(AxisStencil, BoundAxisAgrees) {
+  Axis soft{"x", "1", {-1, -0.4, 0.1, 0.5, 2}, 2, 0, 0.2, true};
+  soft.softness = 0.3;
+  for (const Axis& axis : {cubic(kUneven), cubic(kUneven, 2), cubic(kUneven, 3), soft,
+                           Axis{"x", "1", {-9, -4, -1, 0, 1, 4, 9}, 2, 0, 0, true},
+                           Axis{"x", "1", {-1, 0, 1, 4, 9}, 2, 0, 0, true}}) {
+    const BoundAxis bound(axis, 3);
+    for (double t = -0.05; t <= 1.05; t += 0.0137) {
+      const double x = std::lerp(axis.low(), axis.high(), t);
+      const Stencil at = axis.stencil(x);
+      const BoundAxis::Taps taps = bound.at(x);
+      std::vector<double> expected(axis.size()), found(axis.size());
+      for (std::size_t k = 0; k < at.count; ++k) expected[at.node[k]] += at.weight[k];
+      for (int k = 0; k < taps.count; ++k)
+        found[static_cast<std::size_t>(taps.offset[k]) / 3] += double{taps.weight[k]};
+      for (std::size_t k = 0; k < axis.size(); ++k) EXPECT_NEAR(found[k], expected[k], 1e-5) << x << ' ' << k;
+    }
+  }
 }
 
 }  // namespace

@@ -136,7 +136,19 @@ TEST(Axis, DefectsAreNamed) {
   for (const double period : {-1.0, kNan, kInf})
     EXPECT_THAT(plain({0, 1}, 1, period).defect(), HasSubstr("bad period")) << period;
   EXPECT_THAT(plain({0, 2 * kPi}, 1, 2 * kPi).defect(), HasSubstr("beyond its period"));
-  EXPECT_THAT(plain({1, 2}, 2, 0, 1.5).defect(), HasSubstr("below its origin"));
+  EXPECT_THAT(plain({1, 2}, 2, 0, 1.5).defect(), HasSubstr("between two nodes"));
+  EXPECT_EQ(plain({1, 1.5, 2}, 2, 0, 1.5).defect(), "");
+  EXPECT_EQ(plain({1, 2}, 2, 0, 3).defect(), "");
+  Axis soft = plain({1, 2}, 2, 0, 1.5);
+  soft.softness = 0.1;
+  EXPECT_EQ(soft.defect(), "");
+  for (const double softness : {-0.1, kNan, kInf}) {
+    soft.softness = softness;
+    EXPECT_THAT(soft.defect(), HasSubstr("bad softness")) << softness;
+  }
+  soft.softness = 0.1;
+  soft.power = 3;
+  EXPECT_THAT(soft.defect(), HasSubstr("bad softness"));
   for (const double origin : {kNan, kInf})
     EXPECT_THAT(plain({1, 2}, 2, 0, origin).defect(), HasSubstr("origin")) << origin;
 }
@@ -156,6 +168,31 @@ TEST(Axis, SpacedNodesAreUniformInTheCoordinate) {
   EXPECT_EQ(spaced_nodes(5, 5, 1, 3), std::vector<double>{5});
   const auto linear = spaced_nodes(-2, 2, 5);
   EXPECT_EQ(linear, (std::vector<double>{-2, -1, 0, 1, 2}));
+}
+
+// u = -sqrt(1 - x) below 1 and sqrt(x - 1) above: -1/2 of it is x = 3/4. Below get at least 9 of 20.
+TEST(Axis, SpacedNodesAcrossAKinkAreUniformOnEitherSide) {
+  const Axis axis = plain({}, 2, 0, 1);
+  EXPECT_EQ(spaced_nodes(axis, 0, 5, 5), (std::vector<double>{0, 1, 1 + 4.0 / 9, 1 + 16.0 / 9, 5}));
+  EXPECT_EQ(spaced_nodes(axis, 0, 2, 5), (std::vector<double>{0, 0.75, 1, 1.25, 2}));
+  EXPECT_EQ(spaced_nodes(axis, 0, 1, 3), (std::vector<double>{0, 0.75, 1}));
+  EXPECT_EQ(intervals_below(19, 1, 1000), 8u);
+  EXPECT_EQ(intervals_below(19, 1, 1), 10u);
+  EXPECT_EQ(intervals_below(19, 1000, 1), 18u);
+  EXPECT_EQ(intervals_below(2, 1, 1000), 1u);
+}
+
+// With softness a, y = x - origin is (u^2 + |u| sqrt(u^2 + 4 a)) / 2 with the sign of u. Rounding: 1e-15
+// of 4.
+TEST(Axis, CoordinatesHaveInverses) {
+  Axis soft = plain({}, 2, 0, 0.3);
+  soft.softness = 0.1;
+  EXPECT_NEAR(soft.coordinate(0.7), 0.4 / std::sqrt(0.5), 1e-15);
+  EXPECT_NEAR(soft.coordinate(-0.1), -0.4 / std::sqrt(0.5), 1e-15);
+  for (const Axis& axis :
+       {soft, plain({}, 1, 0, 0.3), plain({}, 2, 0, 0.3), plain({}, 3, 0, 0.3), plain({}, 2.5, 0, 0.3)})
+    for (const double x : {-4.0, -0.1, 0.29, 0.3, 0.31, 1.0, 4.0})
+      EXPECT_NEAR(axis.at_coordinate(axis.coordinate(x)), x, 1e-14) << axis.power << ' ' << axis.softness;
 }
 
 }  // namespace

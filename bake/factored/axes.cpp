@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "sunbeam/core/error.h"
+#include "sunbeam/detail/factor_frame.h"
 
 namespace sunbeam {
 namespace {
@@ -13,7 +14,7 @@ constexpr double kMoreNodesPerFringeOverWhite = 8;  // 3 alone would be off by 1
 constexpr std::size_t kLeastFringeNodes = 6;
 constexpr std::size_t kAlbedoNodes = 3;           // where wavelengths differ; the series in kd converges fast
 constexpr std::size_t kDepthNodesOfOneValue = 5;  // where only wavelengths make depths differ
-constexpr double kLowestCosine = 1e-3;
+constexpr std::size_t kLeastDepthNodesOfDecay = 12;  // where `arrival` holds what the pigment absorbs
 constexpr double kMostCells = 1 << 28;
 
 Axis cubic(Axis axis) {
@@ -41,15 +42,21 @@ double exchange_nodes_per_fringe(const Wavelengths& w) {
          kMoreNodesPerFringeOverWhite * square(*std::max_element(w.albedo.begin(), w.albedo.end()));
 }
 
-Axis depths_axis(const Recipe& recipe, const Wavelengths& w) {
+Axis depths_axis(const Recipe& recipe, const Wavelengths& w, std::size_t least_count = 0) {
   const Axis& absorption = recipe.grid[2];
   const auto [least, most] = std::minmax_element(w.absorption.begin(), w.absorption.end());
   const double thickness = recipe.material.pigment_thickness_nm;
   const double low = absorption.low() * thickness * *least, high = absorption.high() * thickness * *most;
   Axis axis{"optical_depth", "1", {low}, 3};
   const std::size_t count = absorption.size() > 1 ? absorption.size() : kDepthNodesOfOneValue;
-  if (high > low) axis.nodes = spaced_nodes(low, high, count, axis.power);
+  if (high > low) axis.nodes = spaced_nodes(low, high, std::max(count, least_count), axis.power);
   return cubic(axis);
+}
+
+Axis arrival_depths_axis(const Recipe& recipe, const Wavelengths& w) {
+  if (recipe.material.transmission == Transmission::straight) return {"optical_depth", "1", {0}, 3};
+  const bool holds_decay = FactorFrame(recipe.material, reaches_below(recipe)).is_warped();
+  return depths_axis(recipe, w, holds_decay ? kLeastDepthNodesOfDecay : 0);
 }
 
 Axis albedos_axis(const Wavelengths& w) {
@@ -76,9 +83,7 @@ std::vector<Axis> joined(std::vector<Axis> axes, const std::vector<Axis>& more) 
 }
 
 ArrayShape arrival_shape(const Recipe& recipe, const Wavelengths& w) {
-  const Axis one_depth{"optical_depth", "1", {0}, 3};
-  const bool straight = recipe.material.transmission == Transmission::straight;
-  const std::vector<Axis> axes{cubic(recipe.grid[1]), straight ? one_depth : depths_axis(recipe, w),
+  const std::vector<Axis> axes{cubic(recipe.grid[1]), arrival_depths_axis(recipe, w),
                                orders_axis(recipe, w, 0, kNodesPerFringe)};
   return shape_of(recipe, "arrival", joined(axes, direction_axes(recipe, "")), recipe.table.precision);
 }
@@ -99,11 +104,13 @@ ArrayShape exchange_shape(const Recipe& recipe, const Wavelengths& w) {
 }  // namespace
 
 std::vector<Axis> direction_axes(const Recipe& recipe, const std::string& suffix) {
-  const auto cosines = spaced_nodes(kLowestCosine, 1, static_cast<std::size_t>(recipe.table.angles), 2);
+  const auto count = static_cast<std::size_t>(recipe.table.angles);
   Axis phi{"phi" + suffix, "rad", {0}};
   if (!recipe.material.roughness.is_isotropic())
     phi.nodes = spaced_nodes(0, kPi / 2, static_cast<std::size_t>(recipe.table.azimuths) / 4 + 1);
-  return {cubic({"cos_theta" + suffix, "1", cosines, 2}), cubic(phi)};
+  if (FactorFrame(recipe.material, reaches_below(recipe)).is_warped())
+    return {cubic({"warped_cos" + suffix, "1", spaced_nodes(0, 1, count)}), cubic(phi)};
+  return {cubic({"cos_theta" + suffix, "1", spaced_nodes(kLowestArrayCosine, 1, count, 2), 2}), cubic(phi)};
 }
 
 FactorShapes factor_shapes(const Recipe& recipe) {

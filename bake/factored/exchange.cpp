@@ -57,16 +57,16 @@ std::vector<double> ExchangeWalks::collected_returns(const Material& material, c
 }
 
 // p of every direction at (a, order), not divided by A.
-std::vector<std::vector<double>> ExchangeWalks::collected_arrivals(const Material& material,
-                                                                   const Axis& orders,
+std::vector<std::vector<double>> ExchangeWalks::collected_arrivals(std::size_t ior, const Axis& orders,
                                                                    std::uint64_t& count) const {
+  const Material material = bake_.material_at(ior);
   std::vector<std::vector<double>> result;
   const FilmLegs legs(material);
   FringePowers powers(ThinFilm::of(material), orders, fringe_order(material, 1));
-  for (std::size_t d = 0; d < bake_.directions.size(); ++d) {
+  for (std::size_t d = 0; d < bake_.direction_count(); ++d) {
     auto& p = result.emplace_back(kNodes * orders.size());
     for (std::size_t r = 0; r < kReplicates; ++r)
-      legs.visit_arrivals(bake_.directions[d], kArrivalStrata, bake_.rng_of_arrivals(d, r),
+      legs.visit_arrivals(bake_.directions[ior][d], kArrivalStrata, bake_.rng_of_arrivals(d, r),
                           [&](const Leg& leg) {
                             powers.at(leg.facet_cosine);
                             collect(ExchangeSolver::cosines().locate(leg.to), leg.weight / kReplicates,
@@ -78,16 +78,16 @@ std::vector<std::vector<double>> ExchangeWalks::collected_arrivals(const Materia
 }
 
 // All directions' light as it arrives; `arrivals` is empty where it passes straight on.
-std::vector<ExchangeSolver::Arrived> ExchangeWalks::arrived(const Material& material,
-                                                            const ExchangeSolver& solver,
+std::vector<ExchangeSolver::Arrived> ExchangeWalks::arrived(std::size_t ior, const ExchangeSolver& solver,
                                                             const std::vector<std::vector<double>>& arrivals,
                                                             std::size_t order, std::size_t orders) const {
+  const FactorFrame frame = bake_.frame_at(ior);
+  const Material material = bake_.material_at(ior);
   std::vector<ExchangeSolver::Arrived> result;
-  for (std::size_t d = 0; d < bake_.directions.size(); ++d) {
-    const double cosine = bake_.directions[d].z;
-    result.push_back(arrivals.empty()
-                         ? solver.straight_on(arrival_cosine(material, cosine))
-                         : solver.bent(at_order(arrivals[d], order, orders), material.cosine_below(cosine)));
+  for (std::size_t d = 0; d < bake_.direction_count(); ++d) {
+    const double cosine = bake_.directions[ior][d].z, visit = frame.one_visit_cosine(cosine);
+    result.push_back(arrivals.empty() ? solver.straight_on(material.cosine_below(cosine), visit)
+                                      : solver.bent(at_order(arrivals[d], order, orders), visit));
   }
   return result;
 }
@@ -100,15 +100,15 @@ Block ExchangeWalks::run(std::size_t ior, std::size_t part) const {
   Block block;
   const auto returns = collected_returns(material, orders, block.summary);
   std::vector<std::vector<double>> arrivals;
-  if (!passes_straight_on(material)) arrivals = collected_arrivals(material, orders, block.summary.walks);
+  if (!passes_straight_on(material)) arrivals = collected_arrivals(ior, orders, block.summary.walks);
   const std::vector<double>& albedos = axes()[2].nodes;
-  const std::size_t pairs = bake_.directions.size() * bake_.directions.size();
+  const std::size_t pairs = bake_.direction_count() * bake_.direction_count();
   std::vector<float> values(solvers_.size() * albedos.size() * orders.size() * pairs);
   Matrix b(static_cast<int>(kNodes));
   for (std::size_t j = 0; j < orders.size(); ++j) {
     std::ranges::copy(at_order(returns, j, orders.size()), b.row(0));
     for (std::size_t t = 0; t < solvers_.size(); ++t) {
-      const auto ends = arrived(material, solvers_[t], arrivals, j, orders.size());
+      const auto ends = arrived(ior, solvers_[t], arrivals, j, orders.size());
       for (std::size_t k = 0; k < albedos.size(); ++k)
         solvers_[t].exchange(ends, b, albedos[k],
                              &values[((t * albedos.size() + k) * orders.size() + j) * pairs]);

@@ -31,9 +31,9 @@ class ExchangeWalks {
  private:
   std::vector<double> collected_returns(const Material& material, const Axis& orders,
                                         BlockSummary& summary) const;
-  std::vector<std::vector<double>> collected_arrivals(const Material& material, const Axis& orders,
+  std::vector<std::vector<double>> collected_arrivals(std::size_t ior, const Axis& orders,
                                                       std::uint64_t& count) const;
-  std::vector<ExchangeSolver::Arrived> arrived(const Material& material, const ExchangeSolver& solver,
+  std::vector<ExchangeSolver::Arrived> arrived(std::size_t ior, const ExchangeSolver& solver,
                                                const std::vector<std::vector<double>>& arrivals,
                                                std::size_t order, std::size_t orders) const;
   const std::vector<Axis>& axes() const { return bake_.shapes.exchange.axes(); }

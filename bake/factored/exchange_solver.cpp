@@ -6,7 +6,7 @@
 namespace sunbeam {
 namespace {
 
-constexpr double kLeastArriving = 1e-30;
+constexpr double kLeastArriving = 1e-30, kLeastCosine = 1e-6;
 
 }  // namespace
 
@@ -21,18 +21,19 @@ ExchangeSolver::ExchangeSolver(double optical_depth) : optical_depth_(optical_de
     for (int b = 0; b < kNodes; ++b) f_.row(a)[b] = std::exp(-optical_depth / (m[a] * m[b]));
 }
 
-ExchangeSolver::Arrived ExchangeSolver::straight_on(double m) const {
-  Arrived end{{}, Vector(kNodes), m};
+ExchangeSolver::Arrived ExchangeSolver::straight_on(double m, double one_visit) const {
+  m = std::max(m, kLeastCosine);
+  Arrived end{{}, Vector(kNodes), m, one_visit};
   for (int b = 0; b < kNodes; ++b) end.f[b] = std::exp(-optical_depth_ / m * (1 / cosines().nodes[b] - 1));
   return end;
 }
 
-ExchangeSolver::Arrived ExchangeSolver::bent(Vector p, double m) const {
+ExchangeSolver::Arrived ExchangeSolver::bent(Vector p, double one_visit) const {
   double arriving = 0;
   for (int a = 0; a < kNodes; ++a) arriving += p[a] * std::exp(-optical_depth_ / cosines().nodes[a]);
   for (double& share : p) share /= std::max(arriving, kLeastArriving);
   Vector f = multiply(p, f_);
-  return {std::move(p), std::move(f), m};
+  return {std::move(p), std::move(f), 0, one_visit};
 }
 
 // kd f_i^T B y_o.
@@ -53,16 +54,20 @@ Matrix ExchangeSolver::later_visits(std::span<const Arrived> ends, const Matrix&
   return result;
 }
 
+double ExchangeSolver::first_visit(const Arrived& from, const Arrived& to) const {
+  if (!from.p.empty()) return dot(from.f, to.p);
+  return one_visit_of_product(optical_depth_, from.below, to.below);
+}
+
 void ExchangeSolver::exchange(std::span<const Arrived> ends, const Matrix& b, double albedo,
                               float* values) const {
   Matrix sum = later_visits(ends, b, albedo);
   const int count = sum.size();
-  for (int i = 0; i < count; ++i) {
-    const Arrived& from = ends[i];
-    for (int o = 0; o < count && !from.p.empty(); ++o)
-      sum.row(i)[o] = sum.row(i)[o] + dot(from.f, ends[o].p) -
-                      one_visit_of_product(optical_depth_, from.below, ends[o].below);
-  }
+  for (int i = 0; i < count; ++i)
+    for (int o = 0; o < count; ++o) {
+      const double one_visit = one_visit_of_product(optical_depth_, ends[i].one_visit, ends[o].one_visit);
+      sum.row(i)[o] += first_visit(ends[i], ends[o]) - one_visit;
+    }
   symmetrise(sum);
   for (int k = 0; k < count * count; ++k) values[k] = static_cast<float>(sum.row(0)[k]);
 }

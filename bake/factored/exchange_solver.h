@@ -14,8 +14,8 @@
 //        = s kd/pi A_i A_o [ p_i^T f_o + kd f_i^T B y_o ],     f = F p,   (1 - kd F B) y_o = f_o.
 //
 // The first term is one visit, E = exp(tau (1/m_i + 1/m_o - 1/(m_i m_o))) unless facets bend light, so
-// exchange = p_i^T f_o - E + kd f_i^T B y_o. What is kept is the mean of both directions of light, which are
-// equal but for noise.
+// exchange = p_i^T f_o - E + kd f_i^T B y_o, with E at the cosines of FactorFrame::one_visit_cosine. What is
+// kept is the mean of both directions of light, which are equal but for noise.
 #pragma once
 
 #include <span>
@@ -36,18 +36,20 @@ class ExchangeSolver {
 
   // Describes light along one direction as it arrives at the base.
   struct Arrived {
-    Vector p;  // empty where light passes straight on: all at one cosine, and one visit is E
+    Vector p;  // empty where light passes straight on: all at one cosine
     Vector f;
-    double below;  // m of E
+    double below;      // that cosine
+    double one_visit;  // m of E
   };
-  Arrived straight_on(double m) const;
+  Arrived straight_on(double m, double one_visit) const;
   // Takes `p` not yet divided by A(w).
-  Arrived bent(Vector p, double m) const;
+  Arrived bent(Vector p, double one_visit) const;
 
   // Writes the exchange of all pairs of `ends`, row by row.
   void exchange(std::span<const Arrived> ends, const Matrix& b, double albedo, float* values) const;
 
  private:
+  double first_visit(const Arrived& from, const Arrived& to) const;
   Matrix later_visits(std::span<const Arrived> ends, const Matrix& b, double albedo) const;
 
   double optical_depth_;

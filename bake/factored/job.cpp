@@ -17,7 +17,7 @@ class FactoredJob : public BakeJob {
  public:
   FactoredJob(const Recipe& recipe, std::uint64_t seed)
       : bake_(recipe, seed),
-        arrival_tasks_(recipe.material.is_smooth() ? 0 : bake_.iors() * bake_.directions.size()) {
+        arrival_tasks_(recipe.material.is_smooth() ? 0 : bake_.iors() * bake_.direction_count()) {
     if (bake_.has_exchange()) exchange_.emplace(bake_);
   }
 
@@ -27,7 +27,7 @@ class FactoredJob : public BakeJob {
     constexpr double kSecondsPerOperation = 5e-10, kLegs = kReplicates * 64 * 64,
                      kNodes = ExchangeSolver::kNodes;
     const FactorShapes& shapes = bake_.shapes;
-    const auto ends = static_cast<double>(bake_.directions.size());
+    const auto ends = static_cast<double>(bake_.direction_count());
     if (task < arrival_tasks_)
       return kSecondsPerOperation * kLegs * static_cast<double>(shapes.arrival.stride(0)) / ends;
     if (!exchange_) return kSecondsPerOperation * 16 * kLegs * static_cast<double>(shapes.returned.stride(0));
@@ -39,7 +39,7 @@ class FactoredJob : public BakeJob {
   }
 
   Block run(std::size_t task) const override {
-    const std::size_t directions = bake_.directions.size();
+    const std::size_t directions = bake_.direction_count();
     if (task < arrival_tasks_) return walk_arrival(bake_, task / directions, task % directions);
     const auto [ior, part] = later(task);
     return exchange_ ? exchange_->run(ior, part) : walk_returned(bake_, ior);
@@ -74,7 +74,7 @@ class FactoredJob : public BakeJob {
 
   // Returns the sum of the relative variances of arrivals.
   double fill(const Blocks& blocks, Factors& factors) const {
-    const std::size_t directions = bake_.directions.size();
+    const std::size_t directions = bake_.direction_count();
     double variance = 0;
     for (std::size_t task = 0; task < arrival_tasks_; ++task)
       variance += add_arrival(task / directions, task % directions, blocks.values(task), factors.arrival);

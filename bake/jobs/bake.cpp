@@ -40,6 +40,7 @@ double bytes_of(const Recipe& recipe, Encoding encoding) {
 std::vector<Encoding> encodings_of(const Recipe& recipe) {
   if (recipe.table.encoding != Encoding::automatic) return {recipe.table.encoding};
   if (!has_factors(recipe.material)) return {Encoding::dense};
+  if (recipe.grid[1].size() > 1 && reaches_below(recipe)) return {Encoding::factored};
   if (bytes_of(recipe, Encoding::factored) < bytes_of(recipe, Encoding::dense))
     return {Encoding::factored, Encoding::dense};
   return {Encoding::dense, Encoding::factored};

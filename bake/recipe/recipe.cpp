@@ -5,6 +5,7 @@
 
 #include "runtime/config/config.h"
 #include "sunbeam/core/error.h"
+#include "sunbeam/detail/factor_frame.h"
 #include "sunbeam/detail/file.h"
 #include "sunbeam/detail/hash.h"
 
@@ -66,19 +67,24 @@ std::array<Axis, 3> bare_axes(const Material& material) {
   return {thickness, base_ior, absorption};
 }
 
-// A base thinner than the exterior has no square root at its first node.
-double power_above(const Axis& axis, double first) { return first < axis.origin ? 1 : axis.power; }
+// Adds the kink of an axis to nodes on both sides of it: nothing interpolates across.
+void add_kink(const Axis& axis, std::vector<double>& nodes) {
+  if (axis.power == 1 || axis.origin <= nodes.front() || axis.origin >= nodes.back()) return;
+  const auto at = std::lower_bound(nodes.begin(), nodes.end(), axis.origin);
+  if (*at != axis.origin) nodes.insert(at, axis.origin);
+}
 
 std::vector<double> read_nodes(const ConfigTable& grid, const Axis& axis) {
   const std::string& key = axis.name;
   const Range allowed = range_of(key);
   if (!grid.is_table(key)) {
-    const auto nodes = grid.numbers(key, allowed);
+    auto nodes = grid.numbers(key, allowed);
     for (std::size_t i = 1; i < nodes.size(); ++i)
       if (nodes[i] <= nodes[i - 1])
         grid.fail(key,
                   fmt::format("found {} after {}; allowed: a list that increases", nodes[i], nodes[i - 1]));
     if (nodes.empty()) grid.fail(key, "the list is empty; allowed: at least one number");
+    add_kink(axis, nodes);
     return nodes;
   }
   const ConfigTable range = grid.table(key);
@@ -90,7 +96,13 @@ std::vector<double> read_nodes(const ConfigTable& grid, const Axis& axis) {
         "count",
         fmt::format("found {} nodes from {} to {}; allowed: one node with from = to, several with from < to",
                     count, from, to));
-  return spaced_nodes(from, to, static_cast<std::size_t>(count), power_above(axis, from), axis.origin);
+  if (from >= axis.origin)
+    return spaced_nodes(from, to, static_cast<std::size_t>(count), axis.power, axis.origin);
+  if (to > axis.origin && count < 3)
+    range.fail("count",
+               fmt::format("found {} nodes from {} to {}, across exterior_ior {}; allowed: 3 or more", count,
+                           from, to, axis.origin));
+  return spaced_nodes(axis, from, to, static_cast<std::size_t>(count));
 }
 
 std::vector<Axis> read_grid(const ConfigTable& grid, const Material& material) {
@@ -98,7 +110,6 @@ std::vector<Axis> read_grid(const ConfigTable& grid, const Material& material) {
   std::vector<Axis> axes;
   for (Axis axis : bare_axes(material)) {
     axis.nodes = grid.has(axis.name) ? read_nodes(grid, axis) : std::vector{defaults[axes.size()]};
-    axis.power = power_above(axis, axis.nodes.front());
     axes.push_back(std::move(axis));
   }
   return axes;
@@ -212,6 +223,17 @@ void read_table(const ConfigTable& table, Recipe& recipe) {
   recipe.table.values = static_cast<TableValues>(table.choice("values", {"auto", "walks"}, 0));
 }
 
+// The remainder of a dense table lies at fixed cosines, which one critical angle suits but not several.
+void refuse_dense_below(const ConfigTable& grid, const Recipe& recipe) {
+  const Axis& base_ior = recipe.grid[1];
+  const bool is_dense = recipe.table.encoding == Encoding::dense || !has_factors(recipe.material);
+  if (is_dense && base_ior.size() > 1 && reaches_below(recipe))
+    grid.fail(base_ior.name,
+              fmt::format("found {} nodes from {}, which is below exterior_ior {}; allowed in a dense table: "
+                          "one base_ior, or nodes from {} up",
+                          base_ior.size(), base_ior.low(), base_ior.origin, base_ior.origin));
+}
+
 void read_accuracy(const ConfigTable& accuracy, Recipe& recipe) {
   recipe.accuracy.tolerance_median =
       accuracy.number("tolerance_median", {1e-6, 10}, recipe.accuracy.tolerance_median);
@@ -258,6 +280,7 @@ Recipe read_recipe(const ConfigTable& config, const std::string& name, RemovedKe
   recipe.spectrum = read_spectrum(config.table("spectrum"), material, grid, recipe);
   read_albedo(material, recipe.spectrum, recipe.material);
   read_table(table, recipe);
+  refuse_dense_below(grid, recipe);
   read_accuracy(accuracy, recipe);
 
   config.finish();
@@ -267,6 +290,16 @@ Recipe read_recipe(const ConfigTable& config, const std::string& name, RemovedKe
 }
 
 }  // namespace
+
+Material at_lowest_base_ior(const Recipe& recipe) {
+  Material material = recipe.material;
+  material.base_ior = recipe.grid[1].low();
+  return material;
+}
+
+bool reaches_below(const Recipe& recipe) {
+  return reaches_below_exterior(recipe.material, recipe.grid[1].low());
+}
 
 Recipe parse_recipe(const std::string& text, const std::string& name,
                     const std::vector<std::string>& overrides) {

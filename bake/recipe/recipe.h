@@ -58,6 +58,12 @@ inline Symmetry symmetry_of(const Recipe& recipe) {
   return recipe.material.roughness.is_isotropic() ? Symmetry::isotropic : Symmetry::anisotropic;
 }
 
+// Says whether some base IOR of the recipe lies below the exterior's.
+bool reaches_below(const Recipe& recipe);
+
+// Returns the material at the lowest base IOR of the grid.
+Material at_lowest_base_ior(const Recipe& recipe);
+
 // Returns true if a dense table of the recipe is solved, false if it is walked.
 inline bool is_solved(const Recipe& recipe) {
   return recipe.table.values == TableValues::automatic && has_solution(recipe.material);

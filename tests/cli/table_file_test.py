@@ -52,7 +52,7 @@ class Info(TableFileTest):
         for name in NAMES:
             with self.subTest(table=name):
                 info = self.info(name)
-                self.assertEqual(info["schema_version"], 2)
+                self.assertEqual(info["schema_version"], 3)
                 self.assertEqual(info["encoding"], "dense" if name.startswith("table") else "factored")
                 self.assertEqual(info["bytes"], (self.folder / name).stat().st_size)
                 self.assertEqual(info["seed"], 7)
@@ -190,7 +190,7 @@ class OtherPrograms(TableFileTest):
             self.assertEqual(re.findall(r'(?m)^name \(type string\): "(\w+)"', text), ARRAYS[table])
             info = self.info(f"{table}.exr")
             self.assertIn(f'sunbeam.recipe_hash (type string): "{info["recipe_hash"]}"', text)
-            self.assertIn('sunbeam.schema_version (type string): "2"', text)
+            self.assertIn('sunbeam.schema_version (type string): "3"', text)
             self.assertIn(f'sunbeam.axis.0.name (type string): "{first_axis}"', text)
 
     def test_exrinfo(self):

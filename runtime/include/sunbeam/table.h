@@ -46,7 +46,7 @@
 namespace sunbeam {
 inline namespace v1 {
 
-inline constexpr int kTableSchemaVersion = 2;
+inline constexpr int kTableSchemaVersion = 3, kOldestTableSchemaVersion = 2;  // written; read
 
 // Says what the array `remainder` of a dense table stands in: see above.
 enum class FrameKind { closed, none };
@@ -112,6 +112,9 @@ struct Table {
 
   bool operator==(const Table& other) const;
 };
+
+// Says whether some base IOR of the table lies below the exterior's.
+bool reaches_below(const Table& table);
 
 }  // namespace v1
 }  // namespace sunbeam

@@ -29,6 +29,11 @@
 // absorption of the channel relative to that of the parameter. A fourth lane of L is the chance of sampling
 // the first surface, taken at the nearest parameters.
 //
+// Where base IORs of a rough film's table lie below the exterior's, nodes of the cosine are even in the
+// warped cosine of factor_frame.h, m~ = hypot(m, 0.3) with "refract", and L = ln(B / (P e) + 1e-4 B1 / P)
+// with e = exp(-a tau / m~) and B1 what B would be if all light arrived. V1 is then taken at hypot(m, a/2)
+// in place of m, with the a of that file.
+//
 // sample mixes bounded visible normals (ggx.h; for a smooth film its mirror direction, a Dirac), and for the
 // rest two densities proportional to powers of cos(theta_i), which grow with the absorption. The choice
 // follows estimates of both albedos. pdf is the exact density of that mixture. What normals send below the

@@ -14,6 +14,7 @@ constexpr double kLeastScale = 1e-18;  // and a pigment let nothing through; its
 struct Grid {
   int cosines, phis;
   bool by_root;
+  bool enters = false;  // those that a smooth film keeps out give way to the next that it lets in
 };
 
 std::vector<BoundWaves::Direction> directions_of(const BoundWaves& waves, const Grid& grid) {
@@ -21,7 +22,8 @@ std::vector<BoundWaves::Direction> directions_of(const BoundWaves& waves, const 
   for (int c = 0; c < grid.cosines; ++c)
     for (int p = 0; p < grid.phis; ++p) {
       const double x = static_cast<double>(c) / (grid.cosines - 1);
-      const double cosine = std::max(grid.by_root ? x * x : x, kLeastCosine);
+      double cosine = std::max(grid.by_root ? x * x : x, kLeastCosine);
+      if (grid.enters) cosine = entering_cosine(waves.material(), cosine);
       directions.push_back(waves.direction(cosine, grid.phis == 1 ? 0 : kPi / 2 * p / (grid.phis - 1)));
     }
   return directions;
@@ -39,7 +41,8 @@ void find_scales(const BoundWaves& waves, const Grid& grid, std::vector<Color4>&
   for (std::size_t k = 0; k < directions.size(); ++k) scales[k] = to_color4(scale_of(waves, directions[k]));
 }
 
-// Q at each pair of nodes, to the front of `ratios`; both directions may be exchanged.
+// Q at each pair of nodes, to the front of `ratios`; both directions may be exchanged. Beyond the critical
+// angle of a smooth film both rest and S are 0, and look-ups just inside it need the limit of their quotient.
 void find_ratios(const BoundWaves& waves, const Grid& grid, std::vector<Color4>& ratios) {
   const auto nodes = directions_of(waves, grid);
   std::vector<Rgb> scales;
@@ -58,7 +61,7 @@ void find_ratios(const BoundWaves& waves, const Grid& grid, std::vector<Color4>&
 Separable fit_isotropic(const BoundWaves& waves) {
   Separable fit;
   find_scales(waves, {Separable::kScaleCosines, 1, false}, fit.scales);
-  find_ratios(waves, {Separable::kRatioRoots, 1, true}, fit.ratios);
+  find_ratios(waves, {Separable::kRatioRoots, 1, true, true}, fit.ratios);
   return fit;
 }
 
@@ -68,7 +71,7 @@ AnisotropicSeparable fit_anisotropic(const BoundWaves& waves) {
   fit.scales.resize(Fit::kScaleCosines * Fit::kScaleAzimuths);
   fit.ratios.resize(Fit::kRatioNodes * Fit::kRatioNodes);
   find_scales(waves, {Fit::kScaleCosines, Fit::kScaleAzimuths, false}, fit.scales);
-  find_ratios(waves, {Fit::kRatioRoots, Fit::kRatioAzimuths, true}, fit.ratios);
+  find_ratios(waves, {Fit::kRatioRoots, Fit::kRatioAzimuths, true, true}, fit.ratios);
   return fit;
 }
 

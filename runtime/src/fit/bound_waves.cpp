@@ -68,24 +68,25 @@ std::vector<double> BoundWaves::leaving(const Row& from, std::span<const Directi
 }
 
 BoundWaves::Direction BoundWaves::direction(double cosine, double phi) const {
+  const Material& material = field_.material();
+  const FactorFrame& frame = field_.frame();
   Direction w;
-  w.below = field_.material().cosine_below(cosine);
-  const double per_cosine = 1 / arrival_cosine(field_.material(), cosine);
+  w.below = frame.one_visit_cosine(cosine);
+  const double per_cosine = 1 / frame.pigment_cosine(cosine), coordinate = frame.coordinate(cosine);
   std::array<float, kMostWavelengths> passing;
-  if (field_.material().is_smooth())
-    film_.powers(field_.material().film_thickness_nm, field_.material().base_ior, static_cast<float>(cosine),
-                 passing.data());
+  if (material.is_smooth())
+    film_.powers(material.film_thickness_nm, material.base_ior, static_cast<float>(cosine), passing.data());
   for (std::size_t k = 0; k < field_.size(); ++k) {
-    const double pigment = -field_.depth(k) * per_cosine;
-    if (field_.material().is_smooth()) {
-      w.share[k] = double{passing[k]} * std::exp(pigment);
+    const double decay = field_.depth(k) * per_cosine;
+    if (material.is_smooth()) {
+      w.share[k] = double{passing[k]} * std::exp(-decay);
     } else {
       const NdArray& arrival = field_.arrivals()[field_.slice(k)];
       w.share[k] =
-          std::exp(arrival.interpolate(std::array{fringe_order_of(k, cosine), cosine, phi}).r + pigment);
+          frame.share(arrival.interpolate(std::array{fringe_order_of(k, cosine), coordinate, phi}).r, decay);
     }
   }
-  if (!exchange_.empty()) w.taps = direction_taps(axes_[0], axes_[1], cosine, phi);
+  if (!exchange_.empty()) w.taps = direction_taps(axes_[0], axes_[1], coordinate, phi);
   return w;
 }
 

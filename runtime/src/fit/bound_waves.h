@@ -19,7 +19,7 @@ class BoundWaves {
 
   // Holds what the rest needs to know of one direction.
   struct Direction {
-    double below = 0;                            // cosine below the film
+    double below = 0;                            // cosine of one visit
     std::array<double, kMostWavelengths> share;  // A
     std::vector<DirectionTap> taps;              // in exchange
   };
@@ -42,6 +42,7 @@ class BoundWaves {
     return field_.wavelengths().fold(std::span(w.share).first(field_.size()));
   }
 
+  const Material& material() const { return field_.material(); }
   const FilmSpectrum& film() const { return film_; }
 
  private:

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "sunbeam/detail/textured_point.h"
+
 namespace sunbeam {
 inline namespace v1 {
 
@@ -10,8 +12,15 @@ TexturedExchange::TexturedExchange(const NdArray& exchange, const TexturedWaves&
                                    const std::vector<Color4>& nodes)
     : waves_(waves), media_(media), grid_(waves.grid()), factor_(factor), nodes_(nodes) {
   for (int p = 0; p < grid_.phis; p += grid_.phi_step)
-    for (int c = 0; c < kCosines; c += grid_.cosine_step) ends_.push_back({c, p});
-  for (int c = 0; c < kCosines; ++c) below_[c] = waves.field().material().cosine_below(grid_.cosine(c));
+    for (int c = 0; c < grid_.cosines; c += grid_.cosine_step)
+      ends_.push_back({c, p, static_cast<std::size_t>(p * grid_.cosines + c)});
+  const FactorFrame& frame = waves.field().frame();
+  const Material& material = waves.field().material();
+  const FilmCosines film(material, grid_.is_warped);
+  for (int c = 0; c < grid_.cosines; ++c) {
+    below_.push_back(frame.one_visit_cosine(waves.cosine(c)));
+    visit_below_.push_back(std::hypot(material.cosine_below(waves.cosine(c)), std::sqrt(film.visit_blur2)));
+  }
   const Wavelengths& w = waves.field().wavelengths();
   for (std::size_t k = 0; k < w.size(); ++k) {
     const bool is_known = k > 0 && w.absorption[k] == w.absorption[k - 1] && w.albedo[k] == w.albedo[k - 1];
@@ -26,7 +35,8 @@ std::vector<float> TexturedExchange::brackets(const NdArray& exchange, std::size
   const std::size_t orders = slice.axes()[0].size(), nodes = slice.stride(2), ends = ends_.size();
   std::vector<std::vector<DirectionTap>> taps;
   for (const End& end : ends_)
-    taps.push_back(direction_taps(slice.axes()[1], slice.axes()[2], grid_.cosine(end.c), grid_.phi(end.p)));
+    taps.push_back(direction_taps(slice.axes()[1], slice.axes()[2],
+                                  waves_.field().frame().coordinate(waves_.cosine(end.c)), grid_.phi(end.p)));
   std::vector<float> result((orders + kMoreOrders) * ends * ends);
   std::vector<double> row(nodes);
   float* to = result.data();
@@ -45,7 +55,7 @@ void TexturedExchange::find_pairs(int d, Color4* pairs) const {
   std::vector<Rgb> sum(ends * ends), scales;
   for (std::size_t k = 0; k < waves_.field().size(); ++k) add_wavelength(d, k, sum);
   for (const End& end : ends_)
-    scales.push_back(factor_.value(nodes_, d, end.c, static_cast<int>(end.column())));
+    scales.push_back(factor_.value(nodes_, d, end.c, static_cast<int>(end.column)));
   for (std::size_t a = 0; a < ends; ++a)
     for (std::size_t b = 0; b < ends; ++b)
       pairs[a * ends + b] =
@@ -57,8 +67,8 @@ Rgb TexturedExchange::one_visit(const End& a, const End& b) const {
   const double depth = waves_.field().material().optical_depth();
   Rgb result;
   for (int channel = 0; channel < 3; ++channel)
-    result[channel] =
-        one_visit_of_product(depth * double{media_.absorption[channel]}, below_[a.c], below_[b.c]);
+    result[channel] = one_visit_of_product(depth * double{media_.absorption[channel]}, visit_below_[a.c],
+                                           visit_below_[b.c]);
   return result;
 }
 
@@ -75,26 +85,25 @@ void TexturedExchange::add_wavelength(int d, std::size_t k, std::vector<Rgb>& su
   for (std::size_t a = 0; a < ends; ++a)
     for (std::size_t b = 0; b < ends; ++b)
       sum[a * ends + b] +=
-          double{share[ends_[a].column()] * share[ends_[b].column()] * here[a * ends + b]} * scale;
+          double{share[ends_[a].column] * share[ends_[b].column] * here[a * ends + b]} * scale;
 }
 
-// Of a unit of power at the base. Simpson's rule over the root: cos dw = 4 pi u^3 du.
+// Of a unit of power at the base, by Simpson's rule.
 double TexturedExchange::most_leaving(const std::vector<float>& brackets, const float* share,
                                       double gain) const {
   constexpr double kLeastViewer = 0.125;
   const int count = grid_.pair_cosines;  // ends of azimuth 0
   double most = 0;
   for (int a = 0; a < count; ++a) {
-    if (grid_.cosine(ends_[a].c) < kLeastViewer) continue;
+    if (waves_.cosine(ends_[a].c) < kLeastViewer) continue;
     double sum = 0;
     for (int b = 0; b < count; ++b) {
-      const double root = static_cast<double>(b) / (count - 1);
       const double simpson = (b == 0 || b == count - 1 ? 1.0 : b % 2 == 1 ? 4.0 : 2.0) / (3.0 * (count - 1));
-      sum += simpson * root * root * root * double{share[ends_[b].c]} *
+      sum += simpson * waves_.measure(ends_[b].c) * double{share[ends_[b].c]} *
              std::exp(-waves_.least_decay(ends_[b].c)) *
              double{brackets[static_cast<std::size_t>(a) * ends_.size() + static_cast<std::size_t>(b)]};
     }
-    most = std::max(most, 4 * kPi * gain * sum);
+    most = std::max(most, gain * sum);
   }
   return most;
 }

@@ -18,12 +18,10 @@ class TexturedExchange {
   void find_pairs(int d, Color4* pairs) const;
 
  private:
-  static constexpr int kCosines = TexturedGrid::kCosines;
-
-  // Names a direction of a pair by its nodes of L.
+  // Names a direction of a pair by its nodes of L, which have one number.
   struct End {
     int c, p;
-    std::size_t column() const { return static_cast<std::size_t>(p * kCosines + c); }
+    std::size_t column;
   };
 
   std::vector<float> brackets(const NdArray& exchange, std::size_t k) const;
@@ -37,7 +35,7 @@ class TexturedExchange {
   const TexturedFactor& factor_;
   const std::vector<Color4>& nodes_;
   std::vector<End> ends_;
-  std::array<double, kCosines> below_{};      // cosines below the film
+  std::vector<double> below_, visit_below_;   // cosines of one visit, in the bracket and beside X
   std::vector<std::vector<float>> brackets_;  // V, each over (fringe_order, end, end)
   std::vector<std::size_t> brackets_of_;      // which of them a wavelength has
 };

@@ -31,22 +31,22 @@ TexturedFactor::TexturedFactor(const TexturedWaves& waves, const TexturedMedia& 
 
 void TexturedFactor::take_cosines() {
   const Material& material = waves_.field().material();
-  const FilmCosines film(material);
+  const FilmCosines film(material, grid_.is_warped);
   const PigmentCosines pigment(film, material.base_ior, material.optical_depth());
-  for (int c = 0; c < kCosines; ++c) {
-    const auto cosine = static_cast<float>(grid_.cosine(c));
-    film_cosines_[c] = std::min(std::sqrt(film.film_cosine_squared(cosine)), 1.0f);
-    per_pigment_cosine_[c] = 1 / std::sqrt(pigment.pigment_cosine_squared(cosine));
+  for (int c = 0; c < cosines(); ++c) {
+    const auto cosine = static_cast<float>(waves_.cosine(c));
+    film_cosines_.push_back(std::min(std::sqrt(film.film_cosine_squared(cosine)), 1.0f));
+    per_pigment_cosine_.push_back(1 / std::sqrt(pigment.pigment_cosine_squared(cosine)));
   }
 }
 
-// Trapezoids in the root: cos dw = 4 pi u^3 du. Relative to the least decay at normal incidence, so that no
-// pigment makes an integral vanish.
+// Trapezoids. Relative to the least decay at normal incidence, so that no pigment makes an integral vanish.
 void TexturedFactor::take_quadrature() {
-  for (int c = 0; c < kCosines; ++c) {
-    const double root = static_cast<double>(c) / (kCosines - 1), end = c == kCosines - 1 ? 0.5 : 1;
-    quadrature_[c] = 4 * kPi / (kCosines - 1) * end * root * root * root *
-                     std::exp(waves_.least_decay(kCosines - 1) - waves_.least_decay(c));
+  const int last = cosines() - 1;
+  for (int c = 0; c <= last; ++c) {
+    const double end = c == 0 || c == last ? 0.5 : 1;
+    quadrature_.push_back(end / last * waves_.measure(c) *
+                          std::exp(waves_.least_decay(last) - waves_.least_decay(c)));
   }
 }
 
@@ -54,8 +54,8 @@ void TexturedFactor::take_quadrature() {
 double TexturedFactor::hemispherical(const float* values) const {
   double sum = 0;
   for (int p = 0; p < grid_.phis; ++p)
-    for (int c = 0; c < kCosines; ++c)
-      sum += phi_share(p, grid_.phis) * quadrature_[c] * double{values[p * kCosines + c]};
+    for (int c = 0; c < cosines(); ++c)
+      sum += phi_share(p, grid_.phis) * quadrature_[c] * double{values[p * cosines() + c]};
   return sum;
 }
 
@@ -88,7 +88,7 @@ void TexturedFactor::fold(int p, Color4* to) const {
   const auto columns = static_cast<std::size_t>(grid_.columns());
   const Wavelengths& wavelengths = waves_.field().wavelengths();
   const std::vector<float> shares = waves_.at_path(p);
-  for (int c = 0; c < kCosines; ++c) {
+  for (int c = 0; c < cosines(); ++c) {
     const double thickness = waves_.thickness_nm(p, c);
     const EvenAxis& axis = grid_.axes[0];
     const EvenPosition d = axis.locate(axis.clamped(thickness));
@@ -96,38 +96,43 @@ void TexturedFactor::fold(int p, Color4* to) const {
     const double* weights = weights_.data() + d.lower * wavelengths.size();
     const Rgb norm = (1 - upper) * norms_[d.lower] + upper * norms_[d.lower + 1];
     const FloatRgb reflectance = this->reflectance(thickness, c);
-    for (std::size_t column = c; column < columns; column += kCosines) {
-      Rgb b;
-      for (std::size_t k = 0; k < wavelengths.size(); ++k)
-        b += lerp(upper, weights[k], weights[k + wavelengths.size()]) * double{shares[k * columns + column]} *
-             wavelengths.weight[k];
+    const Rgb passing = this->passing(c, thickness, reflectance);
+    for (std::size_t column = c; column < columns; column += grid_.cosines) {
+      Folded b{{}, {}, passing};
+      for (std::size_t k = 0; k < wavelengths.size(); ++k) {
+        const double weight = lerp(upper, weights[k], weights[k + wavelengths.size()]);
+        b.arriving += weight * double{shares[k * columns + column]} * wavelengths.weight[k];
+        b.all += weight * wavelengths.weight[k];
+      }
       to[column] = node(b, norm, c, reflectance);
     }
   }
 }
 
-// `b` is the rest's directional albedo, `norm` its hemispherical integral; both without the least decay.
-Color4 TexturedFactor::node(const Rgb& b, const Rgb& norm, int c, const FloatRgb& reflectance) const {
-  const Color4 passing = this->passing(c, reflectance);
+// `norm` is the hemispherical integral of what arrives.
+Color4 TexturedFactor::node(const Folded& b, const Rgb& norm, int c, const FloatRgb& reflectance) const {
   Color4 result{};
   for (int channel = 0; channel < 3; ++channel) {
-    const double albedo = std::max({b[channel], kLeastShare * mean(b), kLeastValue});
     const double scale = std::sqrt(std::max({norm[channel], kLeastShare * mean(norm), square(kLeastValue)}));
     const double decay = waves_.least_decay(c) - this->decay(channel, c);
-    const double value = std::log(albedo / scale / double{passing[channel]}) - decay;
+    double albedo = std::max({b.arriving[channel], kLeastShare * mean(b.arriving), kLeastValue});
+    if (grid_.is_warped)
+      albedo += waves_.field().frame().floor() * std::max(b.all[channel], kLeastShare * mean(b.all)) *
+                std::exp(std::min(decay, -kLeastLog));
+    const double value = std::log(albedo / scale / b.passing[channel]) - decay;
     result[channel] = static_cast<float>(std::clamp(value, kLeastLog, kMostLog));
   }
-  result[3] = static_cast<float>(first_chance(reflectance, mean(b), c));
+  result[3] = static_cast<float>(first_chance(reflectance, mean(b.arriving), c));
   return result;
 }
 
 Rgb TexturedFactor::value(const std::vector<Color4>& nodes, int d, int c, int column) const {
   const double thickness = grid_.axes[0].node(d);
-  const auto path = static_cast<float>(textured_path(waves_.field().material(), grid_.cosine(c)));
+  const auto path = static_cast<float>(textured_path(waves_.field().material(), waves_.cosine(c)));
   const EvenPosition at = grid_.locate_path(static_cast<float>(thickness), path);
   const Color4* lower = nodes.data() + at.lower * grid_.columns() + column;
   const Rgb logs = to_rgb(lower[0] + at.upper_weight * (lower[grid_.columns()] - lower[0]));
-  const Rgb passing = to_rgb(this->passing(c, reflectance(thickness, c)));
+  const Rgb passing = this->passing(c, thickness, reflectance(thickness, c));
   Rgb b;
   for (int channel = 0; channel < 3; ++channel)
     b[channel] = std::exp(logs[channel] + waves_.least_decay(c) - decay(channel, c)) * passing[channel];
@@ -140,18 +145,33 @@ double TexturedFactor::decay(int channel, int c) const {
          per_pigment_cosine_[c];
 }
 
-Color4 TexturedFactor::passing(int c, const FloatRgb& reflectance) const {
-  return waves_.field().material().is_smooth() ? media_.passing(reflectance)
-                                               : FilmCosines::passing(film_cosines_[c]) + Color4{};
+Rgb TexturedFactor::passing(int c, double thickness_nm, const FloatRgb& reflectance) const {
+  if (!waves_.field().material().is_smooth()) return Rgb(double{FilmCosines::passing(film_cosines_[c])});
+  constexpr float kFaint = 0.01f;
+  const Color4 passing = media_.passing(reflectance);
+  return TexturedMedia::mean(passing) < kFaint ? faint_passing(c, thickness_nm) : to_rgb(passing);
+}
+
+// What a smooth film hardly lets pass is not the difference of two floats here, so that L goes on smoothly.
+Rgb TexturedFactor::faint_passing(int c, double thickness_nm) const {
+  constexpr double kLeast = 1e-15;  // as B is, it is kept above 0
+  const Wavelengths& wavelengths = waves_.field().wavelengths();
+  std::array<float, kMostWavelengths> powers;
+  media_.film.powers(thickness_nm, waves_.field().material().base_ior, static_cast<float>(waves_.cosine(c)),
+                     powers.data());
+  Rgb sum;
+  for (std::size_t k = 0; k < wavelengths.size(); ++k) sum += double{powers[k]} * wavelengths.weight[k];
+  const double least = std::max(double{TexturedMedia::kLeastShare} * mean(sum), kLeast);
+  return transform(sum, [least](double p) { return std::max(p, least); });
 }
 
 double TexturedFactor::first_chance(const FloatRgb& r, double rest, int c) const {
   const Material& material = waves_.field().material();
   const double of_first = std::max(0.0, double{r.r + r.g + r.b} / 3);
-  double of_rest = std::max(0.0, rest) * std::exp(-waves_.least_decay(c) - waves_.least_decay(kCosines - 1));
+  double of_rest = std::max(0.0, rest) * std::exp(-waves_.least_decay(c) - waves_.least_decay(cosines() - 1));
   if (is_product_)  // the bracket, without X, at a mean cosine of the light
     of_rest *= one_visit_of_product(material.optical_depth() * double{media_.absorption[3]},
-                                    material.cosine_below(grid_.cosine(c)), material.cosine_below(2.0 / 3));
+                                    material.cosine_below(waves_.cosine(c)), material.cosine_below(2.0 / 3));
   return std::clamp(of_first / (of_first + of_rest + kLeastValue), kLeastChance, 1 - kLeastChance);
 }
 

@@ -23,7 +23,11 @@ class TexturedFactor {
   const std::vector<float>& shares(int d) const { return shares_[static_cast<std::size_t>(d)]; }
 
  private:
-  static constexpr int kCosines = TexturedGrid::kCosines;
+  // Holds the rest's directional albedo without the least decay, what it would be if all light arrived, and
+  // P.
+  struct Folded {
+    Rgb arriving, all, passing;
+  };
 
   void take_cosines();
   void take_quadrature();
@@ -31,8 +35,10 @@ class TexturedFactor {
   double hemispherical(const float* values) const;
   void fold(int p, Color4* columns) const;
   FloatRgb reflectance(double thickness_nm, int c) const;
-  Color4 passing(int c, const FloatRgb& reflectance) const;
-  Color4 node(const Rgb& b, const Rgb& norm, int c, const FloatRgb& reflectance) const;
+  Rgb passing(int c, double thickness_nm, const FloatRgb& reflectance) const;
+  Rgb faint_passing(int c, double thickness_nm) const;
+  int cosines() const { return grid_.cosines; }
+  Color4 node(const Folded& b, const Rgb& norm, int c, const FloatRgb& reflectance) const;
   double first_chance(const FloatRgb& r, double rest, int c) const;
   double decay(int channel, int c) const;
 
@@ -40,8 +46,8 @@ class TexturedFactor {
   const TexturedMedia& media_;
   const TexturedGrid& grid_;
   bool is_product_;
-  std::array<float, kCosines> film_cosines_{}, per_pigment_cosine_{};  // c~ and 1 / m~
-  std::array<double, kCosines> quadrature_{};
+  std::vector<float> film_cosines_, per_pigment_cosine_;  // c~ and 1 / m~
+  std::vector<double> quadrature_;
   std::vector<std::vector<float>> shares_;  // of each thickness
   std::vector<double> weights_;             // (thickness, wavelength): g A*
   std::vector<Rgb> norms_;                  // (thickness): fold(g A* A*)

@@ -30,13 +30,14 @@ inline float blend(const std::vector<float>& values, const OrderStencil& at, std
          at.weight[3] * from[3 * stride];
 }
 
-// Holds the fringe orders of all nodes of a grid; they depend on no base and no pigment.
+// Holds the fringe orders of all nodes of a grid. They depend on no pigment, and on no base IOR where the
+// frame has no places.
 struct TexturedOrders {
-  TexturedOrders(const Table& table, const TexturedGrid& grid);
+  TexturedOrders(const Table& table, const TexturedGrid& grid, const FactorFrame& frame);
 
   // These return the place of a wavelength in the arrays of those names.
   const OrderStencil& arrival_at_thickness(int d, std::size_t k, std::size_t c) const {
-    return arrival[(static_cast<std::size_t>(d) * waves + k) * TexturedGrid::kCosines + c];
+    return arrival[(static_cast<std::size_t>(d) * waves + k) * cosines + c];
   }
   const OrderStencil& arrival_at_path(int p, std::size_t k) const {
     return path[static_cast<std::size_t>(p) * waves + k];
@@ -46,15 +47,13 @@ struct TexturedOrders {
     return visits[static_cast<std::size_t>(d) * waves + k];
   }
 
-  std::size_t waves;
+  std::size_t waves, cosines;
   std::vector<OrderStencil> arrival, path, visits;
 };
 
 // Gives what the fit asks of each wavelength. What it is made of must outlive it.
 class TexturedWaves {
  public:
-  static constexpr int kCosines = TexturedGrid::kCosines;
-
   // `material` has the base IOR and the absorption.
   TexturedWaves(const Table& table, const Material& material, const TexturedGrid& grid,
                 const TexturedOrders& orders, const FilmSpectrum& film);
@@ -63,6 +62,11 @@ class TexturedWaves {
   // path.
   std::vector<float> at_thickness(int d) const;
   std::vector<float> at_path(int p) const;
+
+  // Returns the cosine of a node. Where a smooth film lets nothing in, it is the next that it lets in.
+  double cosine(int c) const { return cosines_[static_cast<std::size_t>(c)]; }
+  // Returns cos dw of a node over the step of its coordinate, azimuths included; 0 where nothing is let in.
+  double measure(int c) const;
 
   // Returns tau/m~ of the wavelength that the pigment absorbs least.
   double least_decay(int c) const { return least_decay_[static_cast<std::size_t>(c)]; }
@@ -78,6 +82,8 @@ class TexturedWaves {
   const TexturedOrders& orders() const { return orders_; }
 
  private:
+  int cosines() const { return grid_.cosines; }
+  void take_cosines();
   void take_pigment();
   void take_returned(const NdArray& returned);
   template <class ArrivalAt, class ThicknessAt>
@@ -90,7 +96,7 @@ class TexturedWaves {
   const FilmSpectrum& film_;
   WaveField field_;
   std::size_t columns_;
-  std::array<double, kCosines> least_decay_{};
+  std::vector<double> cosines_, least_decay_;
   std::vector<float> pigment_;                // ln of what it leaves, as the shares
   std::vector<std::vector<float>> arrivals_;  // of each slice: (fringe_order, column)
   std::vector<std::vector<float>> returned_;  // of each wavelength with path "sum": (fringe_order)

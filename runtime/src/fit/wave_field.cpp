@@ -4,7 +4,7 @@ namespace sunbeam {
 inline namespace v1 {
 
 WaveField::WaveField(const Table& table, const Material& material)
-    : factors_(table.factors), material_(material) {
+    : factors_(table.factors), material_(material), frame_(material, reaches_below(table)) {
   for (const double absorption : wavelengths().absorption)
     depths_.push_back(material.optical_depth() * absorption);
   if (material.is_smooth()) return;
@@ -21,8 +21,9 @@ double WaveField::gain(std::size_t k, double returned) const {
   return once / (1 - wavelengths().albedo[k] * returned);
 }
 
-std::vector<DirectionTap> direction_taps(const Axis& cosines, const Axis& phis, double cosine, double phi) {
-  const Stencil c = cosines.stencil(cosine), p = phis.stencil(phi);
+std::vector<DirectionTap> direction_taps(const Axis& cosines, const Axis& phis, double coordinate,
+                                         double phi) {
+  const Stencil c = cosines.stencil(coordinate), p = phis.stencil(phi);
   std::vector<DirectionTap> taps;
   for (std::size_t a = 0; a < c.count; ++a)
     for (std::size_t b = 0; b < p.count; ++b)

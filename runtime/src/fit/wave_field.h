@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "sunbeam/detail/factor_frame.h"
 #include "sunbeam/table.h"
 
 namespace sunbeam {
@@ -26,9 +27,10 @@ class WaveField {
   std::size_t size() const { return depths_.size(); }
   const Wavelengths& wavelengths() const { return factors_.wavelengths; }
   const Material& material() const { return material_; }
+  const FactorFrame& frame() const { return frame_; }
 
   double depth(std::size_t k) const { return depths_[k]; }
-  // The arrivals are arrays over (fringe_order, cos_theta, phi), for a rough film. Wavelengths of one depth
+  // The arrivals are arrays over (fringe_order, direction), for a rough film. Wavelengths of one depth
   // have one slice in common, whose number is slice(k).
   std::size_t slice(std::size_t k) const { return slice_[k]; }
   const std::vector<NdArray>& arrivals() const { return arrivals_; }
@@ -38,6 +40,7 @@ class WaveField {
  private:
   const Factors& factors_;
   Material material_;
+  FactorFrame frame_;
   std::vector<double> depths_;
   std::vector<std::size_t> slice_;
   std::vector<NdArray> arrivals_;
@@ -48,19 +51,21 @@ class WaveField {
 // become a per cent. So a gain with which `most_leaving` would leave is cut.
 inline double cut_gain(double gain, double most_leaving) { return gain / std::max(most_leaving, 1.0); }
 
-// Holds a node of the two axes of a direction in an array, (cos_theta, phi), and its weight there.
+// Holds a node of the two axes of a direction in an array, and its weight there.
 struct DirectionTap {
   std::size_t node;
   double weight;
 };
-std::vector<DirectionTap> direction_taps(const Axis& cosines, const Axis& phis, double cosine, double phi);
+// `coordinate` is that of FactorFrame.
+std::vector<DirectionTap> direction_taps(const Axis& cosines, const Axis& phis, double coordinate,
+                                         double phi);
 
 // Contracts one direction of `exchange`: adds to each node of the other what the array, (direction,
 // direction), holds there.
 void contract(std::span<const float> exchange, std::span<const DirectionTap> from, std::span<double> row);
 
-// Returns V of two directions, whose cosines below the film are m_i and m_o; `row` is exchange with the first
-// contracted.
+// Returns V of two directions, whose one visit is at the cosines m_i and m_o below the film; `row` is
+// exchange with the first contracted.
 double bracket(double depth, double m_i, double m_o, std::span<const double> row,
                std::span<const DirectionTap> to);
 

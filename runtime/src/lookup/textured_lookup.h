@@ -19,15 +19,18 @@ enum class TexturedKind { plain, general, dense };
 
 // Says where a direction lies among the nodes of L, and holds its closed forms.
 struct TexturedEnd {
+  // `root` is that of the cosine.
   TexturedEnd(const TexturedRest& rest, const FilmCosines& film, const ParameterTaps& taps,
               const PigmentCosines& pigment, float cosine, float root)
       : roots(sqrt4(Color4{film.path_squared(cosine), pigment.pigment_cosine_squared(cosine),
-                           film.film_cosine_squared(cosine), 1})),
-        at(rest.direction(taps, roots[0], root)),
+                           film.film_cosine_squared(cosine), pigment.warp_radicand(cosine)})),
+        coordinate(film.is_warped ? pigment.warped(cosine, roots[3]) : root),
+        at(rest.direction(taps, roots[0], coordinate)),
         per_pigment_cosine(1 / roots[1]),
         passing(FilmCosines::passing(roots[2])) {}
 
   Color4 roots;
+  float coordinate;  // among the nodes of L and X
   TexturedRest::Direction at;
   float per_pigment_cosine;  // 1 / m~
   float passing;             // of a rough film
@@ -36,7 +39,7 @@ struct TexturedEnd {
 struct TexturedData {
   TexturedData(const Table& table, Arithmetic arithmetic)
       : material(table.material),
-        film(table.material),
+        film(table.material, table.is_factored() && reaches_below(table) && !table.material.is_smooth()),
         facets(table.material.roughness),
         smooth(table.material.is_smooth()) {
     if (table.is_factored()) {
@@ -69,8 +72,7 @@ struct TexturedData {
   SUNBEAM_NOINLINE Color4 general_factor(const Parameters& parameters, const ParameterTaps& taps,
                                          const PigmentCosines& pigment, const TexturedEnd& o,
                                          const TexturedEnd& i, const Vec3& wo, const Vec3& wi) const {
-    const TexturedRest::PairEnd end_o{std::sqrt(static_cast<float>(wo.z)), quadrant(wo)},
-        end_i{std::sqrt(static_cast<float>(wi.z)), quadrant(wi)};
+    const TexturedRest::PairEnd end_o{o.coordinate, quadrant(wo)}, end_i{i.coordinate, quadrant(wi)};
     const float paths = o.per_pigment_cosine + i.per_pigment_cosine;
     const Color4 factor = exp4(rest->at(taps, o.at, end_o.phi) + rest->at(taps, i.at, end_i.phi) -
                                (pigment.optical_depth * paths) * rest->media().absorption);

@@ -13,7 +13,7 @@ TexturedRest::TexturedRest(const Table& table, Arithmetic arithmetic)
 }
 
 TexturedRest::PairTaps TexturedRest::taps(const PairEnd& end) const {
-  const EvenPosition c(end.root, grid_.pair_cosines);
+  const EvenPosition c(end.coordinate, grid_.pair_cosines);
   PairTaps taps{{c.lower, c.lower + 1}, {1 - c.upper_weight, c.upper_weight}, 2};
   if (grid_.pair_phis == 1) return taps;
   const EvenPosition p(end.phi, grid_.pair_phis);

@@ -27,9 +27,10 @@ class TexturedRest {
   struct Direction {
     EvenPosition path, cosine;
   };
-  // Locates a direction: `path` is the root of FilmCosines::path_squared, `root` that of the cosine.
-  Direction direction(const ParameterTaps& taps, float path, float root) const {
-    return {grid_.locate_path(taps.thickness_nm, path), {root, TexturedGrid::kCosines}};
+  // Locates a direction: `path` is the root of FilmCosines::path_squared, `coordinate` the warped
+  // cosine or the root of it.
+  Direction direction(const ParameterTaps& taps, float path, float coordinate) const {
+    return {grid_.locate_path(taps.thickness_nm, path), {coordinate, grid_.cosines}};
   }
 
   // Returns L; the last lane is the chance of sampling the first surface, interpolated too.
@@ -53,15 +54,15 @@ class TexturedRest {
     if (grid_.phis == 1) return at(taps, w);
     const EvenPosition azimuth(phi, grid_.phis);
     ParameterTaps lower = taps, upper = taps;
-    lower.row += static_cast<std::size_t>(azimuth.lower * TexturedGrid::kCosines);
-    upper.row = lower.row + TexturedGrid::kCosines;
+    lower.row += static_cast<std::size_t>(azimuth.lower * grid_.cosines);
+    upper.row = lower.row + static_cast<std::size_t>(grid_.cosines);
     const Color4 low = at(lower, w);
     return low + azimuth.upper_weight * (at(upper, w) - low);
   }
 
-  // exchange() returns X of two directions, each given by the root of its cosine and by phi as above.
+  // exchange() returns X of two directions, each given by its coordinate and by phi as above.
   struct PairEnd {
-    float root, phi;
+    float coordinate, phi;
   };
   Color4 exchange(const Parameters& at, const PairEnd& o, const PairEnd& i) const;
 
@@ -99,9 +100,9 @@ class TexturedRest {
   TexturedMedia media_;
   int stride_;                 // from path to path, in nodes
   std::array<int, 4> corner_;  // distance of a place's rows from the first
-  std::vector<Color4> nodes_;  // (path, base_ior, absorption_per_nm, phi, root of the cosine)
+  std::vector<Color4> nodes_;  // (path, base_ior, absorption_per_nm, phi, cosine)
   // Only path "product" has them: (film_thickness_nm, base_ior, absorption_per_nm, direction, direction),
-  // with directions as (phi, root of the cosine).
+  // with directions as (phi, cosine).
   std::vector<Color4> pairs_;
 };
 

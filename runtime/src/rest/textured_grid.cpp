@@ -10,8 +10,9 @@ namespace {
 
 constexpr double kNodesPerFringe = 12;  // of the shortest wavelength
 constexpr int kLeastThicknesses = 9;
-constexpr int kIorNodes = 12, kAbsorptionNodes = 12;
-constexpr int kPhis = 7;  // of an anisotropic film
+constexpr int kIorNodes = 12, kAbsorptionNodes = 12, kCosines = 13;
+constexpr int kIorNodesBelow = 24, kCosinesBelow = 25;  // where base IORs lie below the exterior's
+constexpr int kPhis = 7;                                // of an anisotropic film
 constexpr int kCosineStep = 2, kPhiStep = 3;
 constexpr double kLeastCosine = 1e-4;
 
@@ -28,13 +29,16 @@ int thickness_nodes(const Table& table) {
 }  // namespace
 
 TexturedGrid::TexturedGrid(const Table& table)
-    : axes{EvenAxis(table.factors.grid[0], thickness_nodes(table)),
-           EvenAxis(table.factors.grid[1], kIorNodes), EvenAxis(table.factors.grid[2], kAbsorptionNodes)} {
+    : is_warped(reaches_below(table) && !table.material.is_smooth()),
+      cosines(reaches_below(table) ? kCosinesBelow : kCosines),
+      axes{EvenAxis(table.factors.grid[0], thickness_nodes(table)),
+           EvenAxis(table.factors.grid[1], reaches_below(table) ? kIorNodesBelow : kIorNodes),
+           EvenAxis(table.factors.grid[2], kAbsorptionNodes)} {
   const bool has_azimuths = table.symmetry != Symmetry::isotropic;
   phis = has_azimuths ? kPhis : 1;
-  cosine_step = has_azimuths ? kCosineStep : 1;
+  cosine_step = (has_azimuths ? kCosineStep : 1) * (reaches_below(table) ? 2 : 1);
   phi_step = has_azimuths ? kPhiStep : 1;
-  pair_cosines = (kCosines - 1) / cosine_step + 1;
+  pair_cosines = (cosines - 1) / cosine_step + 1;
   pair_phis = (phis - 1) / phi_step + 1;
   const double from = axes[0].low() * textured_path(table.material, 0), to = axes[0].high();
   paths = nodes_between(table, from, to);
@@ -42,9 +46,9 @@ TexturedGrid::TexturedGrid(const Table& table)
   if (to > from) per_extent = static_cast<float>(1 / (to - from));
 }
 
-double TexturedGrid::cosine(int c) {
-  const double root = static_cast<double>(c) / (kCosines - 1);
-  return std::max(root * root, kLeastCosine);
+double TexturedGrid::cosine(const FactorFrame& frame, int c) const {
+  if (is_warped) return frame.cosine(coordinate(c));
+  return std::max(square(coordinate(c)), kLeastCosine);
 }
 
 }  // namespace v1

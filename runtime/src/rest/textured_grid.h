@@ -5,6 +5,7 @@
 #include <array>
 
 #include "runtime/src/base/even_axis.h"
+#include "sunbeam/detail/factor_frame.h"
 #include "sunbeam/table.h"
 
 namespace sunbeam {
@@ -13,20 +14,19 @@ inline namespace v1 {
 struct TexturedGrid {
   explicit TexturedGrid(const Table& table);
 
-  static constexpr int kCosines = 13;  // even roots
-
   // These return the direction and the path of a node; the cosine is kept from 0, where nothing arrives.
-  static double cosine(int c);
+  double coordinate(int c) const { return static_cast<double>(c) / (cosines - 1); }
+  double cosine(const FactorFrame& frame, int c) const;
   double phi(int p) const { return phis == 1 ? 0 : kPi / 2 * p / (phis - 1); }
   double path_nm(int node) const {
     return per_extent > 0 ? first_path + node / ((paths - 1) * double{per_extent}) : double{first_path};
   }
 
-  // These count the directions of L, as (phi, root of the cosine), and of X.
-  int columns() const { return phis * kCosines; }
+  // These count the directions of L, as (phi, cosine), and of X.
+  int columns() const { return phis * cosines; }
   int pair_ends() const { return pair_cosines * pair_phis; }
 
-  // L is (path, base_ior, absorption_per_nm, phi, root of the cosine). These return the cells from path to
+  // L is (path, base_ior, absorption_per_nm, phi, cosine). These return the cells from path to
   // path, and the cell at the first path and direction.
   std::size_t path_stride() const {
     return static_cast<std::size_t>(axes[1].size() * axes[2].size() * columns());
@@ -49,11 +49,13 @@ struct TexturedGrid {
     return {std::max((thickness_nm * path - first_path) * per_extent, 0.0f), paths};
   }
 
+  bool is_warped;  // of FactorFrame: nodes are even in the warped cosine, else in the root
+  int cosines;
   std::array<EvenAxis, 3> axes;  // of the parameters, in the order of kParameterNames
   int phis;                      // even azimuths in a quadrant; 1 for an isotropic film
   int paths;
   float first_path, per_extent = 0;  // nodes are even in thickness times path
-  // Of an anisotropic film's pairs only every second cosine and every third azimuth are kept: they are many.
+  // Pairs are many. Of those of an anisotropic film, or of a base below the exterior, only some are kept.
   int cosine_step, phi_step;
   int pair_cosines, pair_phis;
 };

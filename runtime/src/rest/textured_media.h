@@ -2,6 +2,8 @@
 // of a smooth film and a (sunbeam/textured_table.h).
 #pragma once
 
+#include <algorithm>
+
 #include "runtime/src/base/color4.h"
 #include "runtime/src/film/film_spectrum.h"
 #include "sunbeam/table.h"
@@ -12,12 +14,17 @@ inline namespace v1 {
 struct TexturedMedia {
   TexturedMedia(const Table& table, Arithmetic arithmetic);
 
-  // Returns the film's transmittance folded, from its reflectance; it is kept above 0.
+  // Returns the film's transmittance folded, from its reflectance. It is kept above 0 and above a share of
+  // the channels' mean, since a folded colour may pass through 0.
   Color4 passing(const FloatRgb& reflectance) const {
-    constexpr float kLeastPassing = 1e-4f;
+    constexpr float kRounding = 1e-7f, kMost = 1e-4f;
     const Color4 all{total.r - reflectance.r, total.g - reflectance.g, total.b - reflectance.b, 0};
-    return select(all > kLeastPassing, all, Color4{} + kLeastPassing);
+    const float least = std::clamp(kLeastShare * mean(all), kRounding, kMost);
+    return select(all > least, all, Color4{} + least);
   }
+  static float mean(const Color4& color) { return (color[0] + color[1] + color[2]) / 3; }
+
+  static constexpr float kLeastShare = 0.01f;
 
   FilmSpectrum film;
   FloatRgb total;     // the fold of 1

@@ -39,13 +39,18 @@ std::shared_ptr<const std::vector<Rgb>> even_steps(const NdArray& first_visit) {
   return std::make_shared<const std::vector<Rgb>>(std::move(steps));
 }
 
+// What facets bend to a base below the exterior does not arrive at the one cosine that a decay would take.
+bool bends_below_exterior(const Material& m) {
+  return m.base_ior < m.exterior_ior && m.transmission == Transmission::refract && !m.is_smooth();
+}
+
 }  // namespace
 
 RestFrame::RestFrame(const Material& material, FirstVisit first_visit)
     : material_(material),
       scale_(material.radiance_scale()),
       least_transmittance_(material.has_multiple_facets() ? kLeastOverMultipleFacets : 0),
-      decays_(!material.scatters() && !material.has_multiple_facets()),
+      decays_(!material.scatters() && !material.has_multiple_facets() && !bends_below_exterior(material)),
       first_visit_(std::move(first_visit)) {}
 
 RestFrame::RestFrame(const Material& material, const NdArray& first_visit)
@@ -57,14 +62,19 @@ RestFrame RestFrame::over(const Material& material) const {
 }
 
 RestFrame::Terms RestFrame::terms(double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const {
-  const double m_i = std::max(material_.cosine_below(cos_i), kSmallestCosine);
-  const double m_o = std::max(material_.cosine_below(cos_o), kSmallestCosine);
+  const double m_i = one_visit_cosine(cos_i), m_o = one_visit_cosine(cos_o);
   Terms t = !first_visit_ ? rgb3_terms(m_i, m_o) : folded_terms(m_i, m_o);
   t.front = scale_ * factor(t_i) * factor(t_o);
   if (decays_) return t;
   t.first_visit *= std::exp(-material_.scattering_depth() * (1 / m_i + 1 / m_o));
   t.decay = Rgb(1);
   return t;
+}
+
+double RestFrame::one_visit_cosine(double cosine) const {
+  const double below = std::max(material_.cosine_below(cosine), kSmallestCosine);
+  if (!bends_below_exterior(material_)) return below;
+  return std::hypot(below, std::sqrt(material_.roughness.u * material_.roughness.v) / 2);
 }
 
 // A transmittance as a factor that the remainder can be divided by. A folded one may be negative.

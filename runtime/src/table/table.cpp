@@ -2,8 +2,14 @@
 
 #include <algorithm>
 
+#include "sunbeam/detail/factor_frame.h"
+
 namespace sunbeam {
 inline namespace v1 {
+
+bool reaches_below(const Table& table) {
+  return reaches_below_exterior(table.material, table.parameter_axis(1).low());
+}
 
 Rgb Table::transmittance(const std::array<double, 3>& x) const {
   if (film_transmittance.empty()) return Rgb(1) - film_reflectance.interpolate(x);

@@ -114,7 +114,10 @@ void check_factor_axes(const Table& table, const NdArray& array, std::size_t fir
   check_axis_range(axes[0], 1, 5);
   check_axis_range(axes[1], 0, 1e12);
   for (std::size_t k = first_cosine; k < axes.size(); k += 2) {
-    check_axis_range(axes[k], 1e-6, 1);
+    if (axes[k].name.starts_with("warped_cos"))
+      check_ends(axes[k], 0, 1);
+    else
+      check_axis_range(axes[k], 1e-6, 1);
     check_period(axes[k + 1], 0);
     if (table.symmetry == Symmetry::anisotropic) {
       check_ends(axes[k + 1], 0, kPi / 2);

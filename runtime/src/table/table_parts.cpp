@@ -5,6 +5,7 @@
 
 #include "runtime/src/table/table_checks.h"
 #include "sunbeam/core/error.h"
+#include "sunbeam/detail/factor_frame.h"
 #include "sunbeam/detail/hash.h"
 #include "sunbeam/detail/text.h"
 
@@ -21,6 +22,11 @@ constexpr std::array<const char*, 5> kArrivalAxes = {"base_ior", "optical_depth"
 constexpr std::array<const char*, 3> kReturnedAxes = {"base_ior", "optical_depth", "fringe_order"};
 constexpr std::array<const char*, 8> kExchangeAxes = {
     "base_ior", "optical_depth", "albedo", "fringe_order", "cos_theta_i", "phi_i", "cos_theta_o", "phi_o"};
+// Of a grid that reaches below the exterior (sunbeam/detail/factor_frame.h).
+constexpr std::array<const char*, 5> kWarpedArrivalAxes = {"base_ior", "optical_depth", "fringe_order",
+                                                           "warped_cos", "phi"};
+constexpr std::array<const char*, 8> kWarpedExchangeAxes = {
+    "base_ior", "optical_depth", "albedo", "fringe_order", "warped_cos_i", "phi_i", "warped_cos_o", "phi_o"};
 constexpr std::array<const char*, 8> kRequiredInfo = {"recipe",    "recipe_hash", "seed",         "samples",
                                                       "estimator", "spectrum",    "tool_version", "encoding"};
 
@@ -113,8 +119,10 @@ Factors read_factors(const TableParts& parts, const Table& table) {
       throw Error("grid axis '" + axis.name + "' " + defect);
   }
   factors.wavelengths = read_wavelengths(parts.attributes);
+  const bool is_warped =
+      FactorFrame(table.material, reaches_below_exterior(table.material, factors.grid[1].low())).is_warped();
   if (!table.material.is_smooth()) {
-    factors.arrival = checked_array(parts, "arrival", kArrivalAxes, 1);
+    factors.arrival = checked_array(parts, "arrival", is_warped ? kWarpedArrivalAxes : kArrivalAxes, 1);
     check_factor_axes(table, factors.arrival, 3);
   }
   if (table.material.absorption_path == AbsorptionPath::sum) {
@@ -123,7 +131,7 @@ Factors read_factors(const TableParts& parts, const Table& table) {
     for (const float value : factors.returned.values())
       if (!(value >= 0 && value <= 1)) throw Error("array 'returned' leaves 0 to 1");
   } else {
-    factors.exchange = checked_array(parts, "exchange", kExchangeAxes, 1);
+    factors.exchange = checked_array(parts, "exchange", is_warped ? kWarpedExchangeAxes : kExchangeAxes, 1);
     check_factor_axes(table, factors.exchange, 4);
     check_same_ends(factors.exchange);
   }
@@ -164,11 +172,27 @@ void read_spectrum(const TableParts& parts, Table& table) {
   }
 }
 
+// Version 2 differs in tables with a base below the exterior alone, and those were wrong.
+int read_schema_version(const TableParts& parts) {
+  const std::string& text = require(parts.attributes, "schema_version");
+  for (int version = kOldestTableSchemaVersion; version <= kTableSchemaVersion; ++version)
+    if (text == std::to_string(version)) return version;
+  throw Error("schema version is '" + text + "'; this reader knows " +
+              std::to_string(kOldestTableSchemaVersion) + " to " + std::to_string(kTableSchemaVersion));
+}
+
+void check_below_exterior(const Table& table, int version) {
+  if (!reaches_below(table)) return;
+  const Axis& base_ior = table.parameter_axis(1);
+  const std::string found = "base_ior reaches down to " + to_text(base_ior.low()) + ", below exterior_ior " +
+                            to_text(table.material.exterior_ior);
+  if (version < 3) throw Error(found + ": schema version 2 is wrong there; bake the table anew");
+  if (!table.is_factored() && base_ior.size() > 1)
+    throw Error(found + ": a dense table has one base_ior there; found " + std::to_string(base_ior.size()));
+}
+
 Table build(const TableParts& parts) {
-  const std::string& version = require(parts.attributes, "schema_version");
-  if (version != std::to_string(kTableSchemaVersion))
-    throw Error("schema version is '" + version + "'; this reader knows " +
-                std::to_string(kTableSchemaVersion));
+  const int version = read_schema_version(parts);
   Table table;
   for (const auto& key : material_keys())
     set_from_text(table.material, key, require(parts.attributes, "material." + key));
@@ -186,6 +210,7 @@ Table build(const TableParts& parts) {
   else
     throw Error("encoding is '" + encoding + "'; allowed: dense, factored");
   check_ranges(table);
+  check_below_exterior(table, version);
   if (require(parts.attributes, "content_hash") !=
       content_hash_of(parts.attributes, {parts.arrays.begin(), parts.arrays.end()}))
     throw Error("content does not match its hash: the file is damaged");
@@ -207,6 +232,7 @@ Attributes describe_axes(const std::vector<Axis>& axes) {
     result[prefix + "power"] = to_text(axes[k].power);
     result[prefix + "period"] = to_text(axes[k].period);
     result[prefix + "origin"] = to_text(axes[k].origin);
+    if (axes[k].softness > 0) result[prefix + "softness"] = to_text(axes[k].softness);
     result[prefix + "interpolation"] = axes[k].is_cubic ? "cubic" : "linear";
     result[prefix + "nodes"] = to_text(axes[k].nodes);
   }
@@ -231,6 +257,7 @@ std::vector<Axis> parse_axes(const Attributes& attributes, const std::string& ar
     axis.power = number(require(attributes, prefix + "power"));
     axis.period = number(require(attributes, prefix + "period"));
     axis.origin = number(require(attributes, prefix + "origin"));
+    if (attributes.count(prefix + "softness")) axis.softness = number(attributes.at(prefix + "softness"));
     const std::string& interpolation = require(attributes, prefix + "interpolation");
     if (interpolation != "linear" && interpolation != "cubic")
       throw Error("array '" + array_name + "': axis '" + axis.name + "' has interpolation '" + interpolation +

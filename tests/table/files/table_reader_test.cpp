@@ -229,9 +229,24 @@ TEST(TableReader, UnknownRestFrame) {
 }
 
 TEST(TableReader, UnknownSchemaVersion) {
+  for (const Form& form : forms())
+    for (const std::string version : {"4", "1"}) {
+      const auto bytes = with_attribute(form, form.bytes(small_table()), "schema_version", "3", version);
+      EXPECT_THAT(refusal(form, bytes, kName),
+                  AllOf(StartsWith(kName), HasSubstr("'" + version + "'"), HasSubstr("2 to 3")))
+          << form.name;
+    }
+}
+
+// Version 2 was wrong there.
+TEST(TableReader, Version2BelowTheExterior) {
+  Table table = small_table();
+  table.material.exterior_ior = 1.45;
   for (const Form& form : forms()) {
-    const auto bytes = with_attribute(form, form.bytes(small_table()), "schema_version", "2", "3");
-    EXPECT_THAT(refusal(form, bytes, kName), AllOf(StartsWith(kName), HasSubstr("'3'"), HasSubstr("2")))
+    const auto bytes = with_attribute(form, form.bytes(table), "schema_version", "3", "2");
+    EXPECT_THAT(refusal(form, bytes, kName),
+                AllOf(StartsWith(kName), HasSubstr("base_ior reaches down to 1.4, below exterior_ior 1.45"),
+                      HasSubstr("schema version 2"), HasSubstr("bake")))
         << form.name;
   }
 }
@@ -295,7 +310,7 @@ TEST(TableReader, ForeignExr) {
     const std::string grey = folder.file("grey.exr");
     {
       Imf::Header header(4, 3);
-      header.insert("sunbeam.schema_version", Imf::StringAttribute("2"));
+      header.insert("sunbeam.schema_version", Imf::StringAttribute("3"));
       header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
       std::vector<float> pixels(12, 0.5f);
       Imf::FrameBuffer buffer;
@@ -310,7 +325,7 @@ TEST(TableReader, ForeignExr) {
 
 std::string vdb_bytes(const openvdb::GridBase::Ptr& grid, bool claims_to_be_a_table) {
   openvdb::MetaMap metadata;
-  if (claims_to_be_a_table) metadata.insertMeta("sunbeam.schema_version", openvdb::StringMetadata("2"));
+  if (claims_to_be_a_table) metadata.insertMeta("sunbeam.schema_version", openvdb::StringMetadata("3"));
   std::ostringstream out;
   openvdb::io::Stream(out).write(openvdb::GridPtrVec{grid}, metadata);
   return out.str();

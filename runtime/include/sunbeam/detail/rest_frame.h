@@ -39,6 +39,7 @@ class RestFrame {
     Rgb first_visit;  // in brackets, first term
     Rgb decay;        // in brackets, what the remainder is multiplied by
   };
+  double one_visit_cosine(double cosine) const;
   Rgb factor(const Rgb& transmittance) const;
   Rgb first_visit(double optical_path) const;
   Terms rgb3_terms(double m_i, double m_o) const;    // without front

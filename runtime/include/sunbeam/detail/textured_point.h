@@ -19,7 +19,8 @@ double textured_path(const Material& material, double cosine);
 // Evaluates the closed forms of the film that one table has for all points: c~, the path in the film, and
 // what m~ needs of the material. Cosines are squared here.
 struct FilmCosines {
-  explicit FilmCosines(const Material& material);
+  // `is_warped` is that of the table's FactorFrame (factor_frame.h).
+  FilmCosines(const Material& material, bool is_warped);
 
   // Returns c~^2.
   float film_cosine_squared(float c) const { return film_scale * c * c + film_offset; }
@@ -35,7 +36,9 @@ struct FilmCosines {
   float film_scale, film_offset;
   float path_scale, path_offset, least_path;
   float least_below;  // of m~^2
-  bool bends;
+  float visit_blur2;  // of the square of the cosine of one visit
+  float softness;     // of the warped cosine
+  bool bends, is_warped;
   double exterior_ior, pigment_thickness_nm;
 };
 
@@ -48,13 +51,22 @@ struct PigmentCosines {
     return std::max(below_scale * c * c + below_offset, 0.0f) + least_below;
   }
 
-  // Returns the cosine below the film, kept above 0.
+  // Returns the cosine of one visit of the base, kept above 0.
   float cosine_below(float c) const {
-    return std::sqrt(std::max(below_scale * c * c + below_offset, 1e-12f));
+    return std::sqrt(std::max(std::max(below_scale * c * c + below_offset, 0.0f) + visit_blur2, 1e-12f));
   }
 
+  // Returns the warped cosine; `root` is that of warp_radicand().
+  float warp_radicand(float c) const { return std::abs(c - critical) + softness; }
+  float warped(float c, float root) const {
+    return std::max((c - critical) / root * per_extent - first_warped, 0.0f);
+  }
+
+  void take_warp(const FilmCosines& material, double base_ior);
+
   float below_scale, below_offset, least_below;  // the first two give the cosine below the film
-  float optical_depth;
+  float visit_blur2, optical_depth;
+  float critical = 0, softness = 1, per_extent = 0, first_warped = 0;  // of the warped cosine
 };
 
 // Says where the base IOR and the absorption lie among the nodes of L, and holds the thickness.

@@ -2,12 +2,13 @@
 
 #include "bake/live/film/geometry.h"
 #include "bake/optics/wavelength_quadrature.h"
+#include "sunbeam/detail/factor_frame.h"
 
 namespace sunbeam {
 namespace {
 
 constexpr double kPhaseStep = 0.5;  // rad of film phase between thickness nodes: cubic to 0.15 % of a fringe
-constexpr std::size_t kCosines = 65;
+constexpr std::size_t kCosines = 65, kCosinesAboutKnee = 129;
 constexpr double kSmallestCosine = 1e-8;  // the node at 0 holds the limit from above: 0 without interfaces
 // Nodes of F over the optical path, even in its cube root: linear to 1e-5 of a white base for |a| up to 4.
 constexpr std::size_t kPathNodes = 2048;
@@ -30,6 +31,16 @@ Axis film_thickness_axis(const Recipe& recipe) {
 Axis film_ior_axis(const Recipe& recipe) {
   Axis axis = recipe.grid[1];
   axis.is_cubic = true;
+  return axis;
+}
+
+// Even, or about the critical angle of the one base IOR that lies below the exterior's.
+Axis film_cosine_axis(const Recipe& recipe) {
+  Axis axis{"cos_theta", "1", spaced_nodes(0, 1, kCosines), 1, 0, 0, true};
+  if (!reaches_below(recipe)) return axis;
+  axis.power = 2;
+  axis.origin = critical_cosine(at_lowest_base_ior(recipe));
+  axis.nodes = spaced_nodes(axis, 0, 1, kCosinesAboutKnee);
   return axis;
 }
 
@@ -91,9 +102,7 @@ NdArray first_visit(const Recipe& recipe) {
 }  // namespace
 
 std::vector<Axis> film_axes(const Recipe& recipe) {
-  return {film_thickness_axis(recipe),
-          film_ior_axis(recipe),
-          {"cos_theta", "1", spaced_nodes(0, 1, kCosines), 1, 0, 0, true}};
+  return {film_thickness_axis(recipe), film_ior_axis(recipe), film_cosine_axis(recipe)};
 }
 
 void bake_film(const Recipe& recipe, Table& table) {
@@ -114,14 +123,14 @@ void bake_film(const Recipe& recipe, Table& table) {
       material.film_thickness_nm = thickness.nodes[a];
       const ThinFilm film = ThinFilm::of(material);
       const std::size_t row = a * table.film_reflectance.stride(0) + b * table.film_reflectance.stride(1);
-      for (std::size_t c = 0; c < kCosines; ++c)
+      for (std::size_t c = 0; c < cosine.size(); ++c)
         table.film_reflectance.set(
             row + c, spectrum.fold_film(film, std::max(cosine.nodes[c], kSmallestCosine)).reflectance);
       if (!passes) continue;
-      for (std::size_t c = 0; c < kCosines; ++c)
+      for (std::size_t c = 0; c < cosine.size(); ++c)
         table.film_transmittance.set(
-            row + c,
-            weighted_transmittance(table.film_reflectance, row, {weights.data() + c * kCosines, kCosines}));
+            row + c, weighted_transmittance(table.film_reflectance, row,
+                                            std::span(weights).subspan(c * cosine.size(), cosine.size())));
     }
   }
 }

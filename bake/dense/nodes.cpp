@@ -1,6 +1,7 @@
 #include "bake/dense/nodes.h"
 
 #include "bake/dense/film_arrays.h"
+#include "sunbeam/detail/factor_frame.h"
 
 namespace sunbeam {
 namespace {
@@ -29,15 +30,27 @@ std::vector<Vec3> directions(const Axis& cosines, const Axis& azimuths) {
   return result;
 }
 
+// Denser towards grazing, where the rest bends, or about the critical angle of a base below the exterior. A
+// smooth film lets nothing in beyond that.
+Axis cosine_axis(const Recipe& recipe) {
+  const auto count = static_cast<std::size_t>(recipe.table.angles);
+  if (!reaches_below(recipe)) return {"", "1", spaced_nodes(kLowestCosine, 1, count, 2), 2, 0, 0, true};
+  Material material = at_lowest_base_ior(recipe);
+  material.absorption_per_nm = 0;
+  Axis axis = critical_axis(material);
+  axis.is_cubic = true;
+  axis.nodes = spaced_nodes(axis, entering_cosine(material, kLowestCosine), 1, count);
+  return axis;
+}
+
 }  // namespace
 
 // Cubic in all but the azimuths of an anisotropic film, of which one is periodic and the other must not
-// differ from it. Cosines are denser towards grazing, where the rest bends.
+// differ from it.
 std::vector<Axis> rest_axes(const Recipe& recipe) {
   std::vector<Axis> axes = recipe.grid;
   for (Axis& axis : axes) axis.is_cubic = true;
-  Axis cosine{"", "1", {}, 2, 0, 0, true};
-  cosine.nodes = spaced_nodes(kLowestCosine, 1, static_cast<std::size_t>(recipe.table.angles), cosine.power);
+  Axis cosine = cosine_axis(recipe);
   const auto azimuths = static_cast<std::size_t>(recipe.table.azimuths);
   Axis phi_i{"phi_i", "rad", {0}}, phi_o{"phi_o", "rad", spaced_nodes(0, kPi, azimuths), 1, 0, 0, true};
   if (symmetry_of(recipe) == Symmetry::anisotropic) {

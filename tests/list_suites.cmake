@@ -1,5 +1,5 @@
 # Run when a program is linked: writes the ctest entries of it, LABEL.Suite; of suites with parameters one for every
-# parameter, LABEL.Suite/parameter.
+# parameter, LABEL.Suite/parameter. Suites named Long* have the label `long` too; disabled ones are left out.
 # cmake -D PROGRAM=FILE -D LABEL=accuracy -D TIMEOUT=600 -D OUTPUT=FILE -P list_suites.cmake
 cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND "${PROGRAM}" --gtest_list_tests OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
@@ -18,11 +18,15 @@ foreach(line IN LISTS lines)
     continue()
   endif()
   set(name "${LABEL}.${suite}${parameter}")
-  if(NOT name IN_LIST names)
+  set(labels "${LABEL}")
+  if(suite MATCHES "^Long")
+    list(APPEND labels long)
+  endif()
+  if(NOT name IN_LIST names AND NOT suite MATCHES "DISABLED_")
     list(APPEND names "${name}")
     string(APPEND entries
       "add_test([=[${name}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${suite}.*${parameter}]=])\n"
-      "set_tests_properties([=[${name}]=] PROPERTIES LABELS [=[${LABEL}]=] TIMEOUT ${TIMEOUT}"
+      "set_tests_properties([=[${name}]=] PROPERTIES LABELS [=[${labels}]=] TIMEOUT ${TIMEOUT}"
       " FAIL_REGULAR_EXPRESSION [=[Running 0 tests;SKIPPED]=])\n")
   endif()
 endforeach()

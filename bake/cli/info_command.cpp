@@ -36,7 +36,7 @@ const char* name_of(Precision precision) { return precision == Precision::half_f
 
 Json describe(const Table& table, const std::string& path) {
   Json json;
-  json["schema_version"] = kTableSchemaVersion;
+  json["schema_version"] = table.schema_version;
   json["encoding"] = table.info.at("encoding");
   json["bytes"] = std::filesystem::file_size(path);
   json["axes"] = describe(axes_of(table));

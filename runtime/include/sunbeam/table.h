@@ -87,6 +87,9 @@ struct Table {
   // tool_version, encoding, error.<name>; with spectrum "full" also color_space, illuminant, wavelengths.
   std::map<std::string, std::string> info;
 
+  // Holds the version of the file that the table came from; one that is written has kTableSchemaVersion.
+  int schema_version = kTableSchemaVersion;
+
   // Returns true if colours are spectra folded into color_space(), where components may be negative; else R,
   // G, B are three wavelengths (spectrum "rgb3").
   bool is_full_spectrum() const;

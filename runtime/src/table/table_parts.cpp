@@ -194,6 +194,7 @@ void check_below_exterior(const Table& table, int version) {
 Table build(const TableParts& parts) {
   const int version = read_schema_version(parts);
   Table table;
+  table.schema_version = version;
   for (const auto& key : material_keys())
     set_from_text(table.material, key, require(parts.attributes, "material." + key));
   if (const auto defect = table.material.defect()) throw Error(defect->message());

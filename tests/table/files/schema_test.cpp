@@ -21,6 +21,7 @@ struct Value {
 
 void expect_values(const std::string& name, std::initializer_list<Value> values) {
   const Table table = load_table_exr(std::string(SUNBEAM_SOURCE_DIR) + "/tables/golden/" + name);
+  EXPECT_EQ(table.schema_version, 2);
   for (const Value& value : values) {
     Parameters at = Parameters::of(table.material);
     at.base_ior = value.base_ior;

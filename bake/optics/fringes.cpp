@@ -8,7 +8,10 @@ namespace sunbeam {
 namespace {
 
 constexpr std::size_t kLanes = 8;
-constexpr double kLeastCosine2 = 1e-12;  // in the film, instead of 0/0; the powers are continuous there
+// sin^2 is divided by the film's own cos^2, so that its rounding errors grow towards the film's critical
+// angle: in the powers by at most 1 / kNearCritical beyond the neighbourhood that this bounds. A film whose
+// index is above that of either neighbour never comes there.
+constexpr double kNearCritical = 0.01;
 
 // One polarisation's (q0 +- q2)^2, (b +- d)^2 / c1^2 and 2 q0 q2, in the letters of thin_film.h.
 struct Polarisation {
@@ -62,7 +65,8 @@ void film_fringes(const ThinFilm& film, double cosine, double first, double step
     std::fill(transmittance.begin(), transmittance.end(), 0.0);
     return;
   }
-  if (c1_squared < 0) {  // evanescent in the film
+  const double n0 = film.exterior_ior, n1 = film.film_ior, n2 = film.base_ior;
+  if (square(n1) * c1_squared <= kNearCritical * std::min(square(n0 * cosine), square(n2) * c2_squared)) {
     for (std::size_t j = 0; j < reflectance.size(); ++j) {
       ThinFilm thick = film;
       thick.thickness_nm = first + static_cast<double>(j) * step;
@@ -72,11 +76,10 @@ void film_fringes(const ThinFilm& film, double cosine, double first, double step
     }
     return;
   }
-  const double c1_2 = std::max(c1_squared, kLeastCosine2), c1 = std::sqrt(c1_2), c2 = std::sqrt(c2_squared);
-  const double n0 = film.exterior_ior, n1 = film.film_ior, n2 = film.base_ior;
+  const double c1 = std::sqrt(c1_squared), c2 = std::sqrt(c2_squared);
   // Here b and d carry one more c1 each than in thin_film.h, and add_waves() takes sin^2 for y.
-  const Polarisation s = polarisation(n0 * cosine, n2 * c2, 1 / n1, n1 * c1_2, c1_2);
-  const Polarisation p = polarisation(cosine / n0, c2 / n2, n1, c1_2 / n1, c1_2);
+  const Polarisation s = polarisation(n0 * cosine, n2 * c2, 1 / n1, n1 * c1_squared, c1_squared);
+  const Polarisation p = polarisation(cosine / n0, c2 / n2, n1, c1_squared / n1, c1_squared);
   const double phase = 4 * kPi * n1 * c1;
   add_waves(s, p, phase * first, phase * step, reflectance.data(), transmittance.data(), reflectance.size());
 }

@@ -16,7 +16,8 @@
 //     R = [(q0 - q2)^2 x + (b - d)^2 y] / D,   T = 4 q0 q2 / D,   D = (q0 + q2)^2 x + (b + d)^2 y.
 // In evanescent waves x and y become 1 and tanh^2 / |c1|^2, and T is divided by cosh^2. T has no
 // cancellation, so both powers keep their relative precision; unpolarised light takes the mean of s and p.
-// Kernels elsewhere compute the same: each says at its head which part of these equations its lanes share.
+// Kernels elsewhere compute the same: each says at its head which part of these equations its lanes share,
+// and how precise it is.
 #pragma once
 
 #include "sunbeam/core/vec.h"

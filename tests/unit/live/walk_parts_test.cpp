@@ -123,6 +123,33 @@ TEST(FilmPackets, AgreeWithAiry) {
     }
 }
 
+// n0 sin = n1 and about it, where the film's own cosine is 0 and sin^2 / c1^2 is 0 / 0: R keeps its digits
+// although it is small, on the side of waves and on the evanescent one.
+template <class V>
+void expect_digits(const ThinFilm& film, double cosine, double nm) {
+  FilmPhases phases;
+  phases.count = 1;
+  phases.k[0] = 2 * kPi * film.film_ior * film.thickness_nm / nm;
+  const FilmSide side(film);
+  const FilmPackets<V> lanes(side, phases, V(cosine));
+  const FilmPower expected = airy(film, cosine, Rgb(nm));
+  const auto expect = [&](const char* what, double found, double right) {
+    EXPECT_NEAR(found / right, 1, 1e-13) << what << ' ' << film.thickness_nm << " nm at " << cosine;
+  };
+  lanes.reflectances([&](int, const V& r) { expect("R", mean_of_lanes(r), expected.reflectance.r); });
+  lanes.transmittances([&](int, const V& t) { expect("T", mean_of_lanes(t), expected.transmittance.r); });
+  expect("R at k", mean_of_lanes(lanes.reflectance_at(V(phases.k[0]))), expected.reflectance.r);
+}
+
+TEST(FilmPackets, KeepDigitsAboutTheFilmsCriticalAngle) {
+  for (const double thickness : {1.0, 30.0, 300.0, 1500.0})
+    for (const double step : {0.0, 1e-15, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5, 1e-3, 1e-2})
+      for (const double cosine : {0.6 - step, 0.6 + step}) {  // 1.25 * 0.8 = 1
+        expect_digits<double>({1.25, 1, 1.3, thickness}, cosine, 510);
+        expect_digits<Lanes>({1.25, 1, 1.3, thickness}, cosine, 510);
+      }
+}
+
 std::array<double, BaseGuide::kBins> importance_of(const std::function<double(double)>& f) {
   std::array<double, BaseGuide::kBins> importance;
   for (int bin = 0; bin < BaseGuide::kBins; ++bin) importance[bin] = f((bin + 0.5) / BaseGuide::kBins);

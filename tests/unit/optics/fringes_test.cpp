@@ -68,12 +68,21 @@ TEST(Fringes, EvanescentInTheFilm) {
   for (std::size_t j = 1; j < 60; ++j) EXPECT_GT(all.reflectance[j], all.reflectance[j - 1]);
 }
 
-// Along the critical angle of the film c1 = 0: the limit, to the 1e-12 that stand in for 0 / 0.
-TEST(Fringes, GrazingInTheFilm) {
-  const ThinFilm film{1.5, 1.2, 1.4, 0};
-  const double cosine = std::sqrt(1 - square(1.2 / 1.5));
-  const Fringes at = fringes(film, cosine, 0, 0.1, 30), near = fringes(film, cosine + 1e-9, 0, 0.1, 30);
-  for (std::size_t j = 0; j < 30; ++j) EXPECT_NEAR(at.reflectance[j], near.reflectance[j], 1e-6) << j;
+// n0 sin = n1 and about it, where the film's own cosine is 0: 1.25 * 0.8 = 1. R keeps its digits although it
+// is small, from films of next to no thickness on.
+TEST(Fringes, KeepDigitsAboutTheFilmsCriticalAngle) {
+  ThinFilm film{1.25, 1, 1.3, 0};
+  for (const double step : {0.0, 1e-15, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5, 1e-3, 1e-2})
+    for (const double cosine : {0.6 - step, 0.6 + step}) {
+      const Fringes all = fringes(film, cosine, 0, 0.01, 400);
+      for (std::size_t j = 0; j < 400; ++j) {
+        film.thickness_nm = static_cast<double>(j) * 0.01;
+        const FilmPower one = airy(film, cosine, Rgb(1));
+        EXPECT_NEAR(all.reflectance[j] / one.reflectance.r, 1, 5e-12) << cosine << ' ' << film.thickness_nm;
+        EXPECT_NEAR(all.transmittance[j] / one.transmittance.r, 1, 1e-14)
+            << cosine << ' ' << film.thickness_nm;
+      }
+    }
 }
 
 TEST(Fringes, TotalReflection) {

@@ -208,6 +208,21 @@ TEST(ThinFilm, FiniteWhereTheFilmAngleIsGrazing) {
   }
 }
 
+// About that angle, against complex amplitudes in extended precision: the small R of a film between nearly
+// equal media keeps its digits.
+TEST(ThinFilm, KeepsDigitsAboutTheFilmsCriticalAngle) {
+  for (const double thickness : {1.0, 30.0, 300.0, 1500.0})
+    for (const double step : {1e-9, 1e-7, 1e-5, 1e-3, 1e-2})
+      for (const double cosine : {0.6 - step, 0.6 + step}) {
+        const auto expected = test::airy_reference(1.25L, 1, 1.3L, thickness, cosine, 550);
+        const FilmPower found = airy({1.25, 1, 1.3, thickness}, cosine, Rgb(550));
+        EXPECT_NEAR(found.reflectance.r / static_cast<double>(expected.reflectance), 1, 1e-14)
+            << thickness << ' ' << cosine;
+        EXPECT_NEAR(found.transmittance.r / static_cast<double>(expected.transmittance), 1, 3e-14)
+            << thickness << ' ' << cosine;
+      }
+}
+
 TEST(ThinFilm, ExtremeStacksStayFiniteAndConserve) {
   for (const double n0 : {1.0, 1.5, 5.0})
     for (const double n1 : {1.0, 1.56, 5.0})

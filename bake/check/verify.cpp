@@ -1,5 +1,8 @@
 #include "bake/check/verify.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <optional>
 
 #include "bake/base/parallel_tasks.h"
@@ -20,6 +23,8 @@ constexpr int kPilotReach = 8;   // times as many
 constexpr int kBatches = 16;
 constexpr double kMostEstimates = 1 << 14;  // of a live run at a median tolerance of 1 %
 constexpr double kFloorMargin = 0.85;       // of the floor promised is aimed at
+
+constexpr double kAlbedoPrecision = 1e-3;  // of those that a table tabulates
 
 double draw(const Axis& axis, Rng& rng) { return lerp(rng.uniform(), axis.low(), axis.high()); }
 
@@ -67,12 +72,24 @@ WalkedRest walk_rest(const Pfmc& model, Technique technique, const Vec3& wi, con
   return rest;
 }
 
+// VerifyPoint::energy. Weights of a fold may be negative, so that a channel of a passive surface may be above
+// 1; luminance may not.
+double energy_of(const Rgb& albedo, const Wavelengths& wavelengths, ColorSpace space) {
+  Rgb most;
+  for (const Rgb& weight : wavelengths.weight)
+    most += transform(weight, [](double w) { return std::max(w, 0.0); });
+  return std::max(max_component(albedo / most), luminance(albedo, space));
+}
+
 class PointCheck {
  public:
   // `textured` is that of `table`, if that is in memory.
   PointCheck(const TableView& table, const std::optional<TexturedTable>& textured, const Spectrum& spectrum,
              const VerifySettings& settings, std::uint64_t index)
-      : settings_(settings), rng_(settings.seed, index), textured_(textured) {
+      : settings_(settings),
+        rng_(settings.seed, index),
+        color_space_(spectrum.color_space()),
+        textured_(textured) {
     point_.parameters = {draw(table.parameter_axis(0), rng_), draw(table.parameter_axis(1), rng_),
                          draw(table.parameter_axis(2), rng_)};
     point_.cos_i = lerp(rng_.uniform(), std::cos(89 * kPi / 180), 1);
@@ -90,7 +107,9 @@ class PointCheck {
     point_.dirac_error =
         max_component(transform(bsdf_->film_reflectance(wi_.z) - model_->film_reflectance(wi_.z),
                                 [](double x) { return std::abs(x); }));
-    point_.albedo = max_component(bsdf_->albedo(wi_));
+    const Rgb albedo = bsdf_->albedo(wi_);
+    point_.albedo = max_component(albedo);
+    point_.energy = energy_of(albedo, wavelengths_, color_space_);
     return point_;
   }
 
@@ -188,6 +207,7 @@ class PointCheck {
 
   const VerifySettings& settings_;
   Rng rng_;
+  ColorSpace color_space_;
   VerifyPoint point_;
   Vec3 wi_;
   std::optional<TableBsdf> bsdf_;
@@ -247,12 +267,42 @@ VerifyReport verify(const TableView& table, const VerifySettings& settings) {
   report.noise_floor = quantiles(report.points, &VerifyPoint::noise_floor);
   report.dirac_error_p99 = quantiles(report.points, &VerifyPoint::dirac_error).p99;
   report.energy_max = quantiles(report.points, &VerifyPoint::albedo).max;
+  report.energy = quantiles(report.points, &VerifyPoint::energy).max;
   report.reciprocity_max = quantiles(report.points, &VerifyPoint::reciprocity).max;
   return report;
 }
 
+std::vector<Limit> limits(const VerifyReport& report, const VerifySettings& settings) {
+  constexpr double kChannels = 3;  // the error is their mean
+  const double stated = std::min(kChannels * report.error.max, settings.tolerance_p99);
+  return {{"error_median", report.error.median, settings.tolerance_median},
+          {"error_p99", report.error.p99, settings.tolerance_p99},
+          {"energy", report.energy, 1 + std::max(stated, kAlbedoPrecision)}};
+}
+
 bool within_tolerance(const VerifyReport& report, const VerifySettings& settings) {
-  return report.error.median <= settings.tolerance_median && report.error.p99 <= settings.tolerance_p99;
+  const auto all = limits(report, settings);
+  return std::all_of(all.begin(), all.end(), [](const Limit& limit) { return limit.holds(); });
+}
+
+double worst_share(const VerifyReport& report, const VerifySettings& settings) {
+  double worst = 0;
+  for (const Limit& limit : limits(report, settings)) {
+    if (std::isnan(limit.found)) return std::numeric_limits<double>::infinity();
+    worst = std::max(worst, limit.found / limit.allowed);
+  }
+  return worst;
+}
+
+std::string to_string(const Limit& limit) {
+  return fmt::format("{} {:.4g} (allowed {:g})", limit.figure, limit.found, limit.allowed);
+}
+
+std::string missed_limits(const VerifyReport& report, const VerifySettings& settings) {
+  std::vector<std::string> missed;
+  for (const Limit& limit : limits(report, settings))
+    if (!limit.holds()) missed.push_back(to_string(limit));
+  return fmt::format("{}", fmt::join(missed, ", "));
 }
 
 std::vector<std::pair<std::string, double>> figures(const VerifyReport& report) {

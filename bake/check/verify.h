@@ -42,6 +42,7 @@ struct VerifyPoint {
   double noise_floor = 0;
   double dirac_error = 0;  // |R_table - R|, largest channel
   double albedo = 0;       // of the table, Dirac included, largest channel
+  double energy = 0;       // share of the light that the table returns, Dirac included; see energy
   double reciprocity = 0;  // max |f(i,o) - f(o,i)| / max(|f(i,o)|, |f(o,i)|, 0.002/pi)
 };
 
@@ -56,6 +57,10 @@ struct VerifyReport {
   std::vector<VerifyPoint> points;
   Quantiles error, textured_error, rest_error, noise_floor;
   double dirac_error_p99 = 0, energy_max = 0, reciprocity_max = 0;
+  // The largest share of the light that the table returns: at most 1 of a passive surface. It is energy_max
+  // but for a fold with negative weights, which lets a channel be above 1: there it is the luminance, or the
+  // channel as a share of the most that reflectances up to 1 fold to, whichever is larger.
+  double energy = 0;
   std::string truth;  // the estimator the table was held against
 };
 
@@ -72,8 +77,30 @@ VerifySettings verify_settings_of(const Recipe& recipe);
 // naming the key if truth is exact and the material has no exact evaluator.
 VerifyReport verify(const TableView& table, const VerifySettings& settings);
 
-// Says whether median and p99 of the error are within the tolerances.
+// Holds a figure of a report and the most that a good table may have.
+struct Limit {
+  const char* figure;
+  double found, allowed;
+
+  bool holds() const { return found <= allowed; }  // not a number holds nothing
+};
+
+// Returns the limits of median, p99 and energy. Median and p99 may be as large as the tolerances. Energy may
+// be above 1 by the error that the table states: by error_max, of which one channel may have all, but not by
+// more than the tolerance of p99; and by the 0.001 to which albedos are tabulated.
+std::vector<Limit> limits(const VerifyReport& report, const VerifySettings& settings);
+
+// Says whether all limits hold.
 bool within_tolerance(const VerifyReport& report, const VerifySettings& settings);
+
+// Returns the largest found / allowed of the limits: the smaller, the better the table.
+double worst_share(const VerifyReport& report, const VerifySettings& settings);
+
+// Returns "error_p99 0.08 (allowed 0.05)".
+std::string to_string(const Limit& limit);
+
+// Lists the limits that do not hold.
+std::string missed_limits(const VerifyReport& report, const VerifySettings& settings);
 
 // Returns the figures by their JSON names: error_median, error_p95, ..., points.
 std::vector<std::pair<std::string, double>> figures(const VerifyReport& report);

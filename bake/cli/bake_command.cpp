@@ -77,26 +77,45 @@ class BakeCommand {
     return done;
   }
 
+  // A whole bake in one encoding.
+  struct Attempt {
+    std::unique_ptr<BakeJob> job;
+    std::unique_ptr<Journal> journal;
+    std::unique_ptr<FinishedBake> table;
+    VerifyReport report;
+  };
+
+  // None if interrupted.
+  std::optional<Attempt> attempt(Encoding encoding) {
+    announce(recipe_, encoding);
+    Attempt a{make_job(recipe_, encoding, options_.seed), journal_of(encoding), {}, {}};
+    if (!run_blocks(*a.job, {0, a.job->tasks()}, *a.journal)) return std::nullopt;
+    a.table = std::make_unique<FinishedBake>(recipe_, *a.job, *a.journal);
+    a.report =
+        measure_error(*a.table, options_.preview ? kPreviewPoints : kCheckPoints, options_.threads, form_);
+    return a;
+  }
+
+  // Saves the first table that meets the tolerances, or the best; a preview tries one encoding.
   int bake_table() {
     const auto encodings = encodings_of(recipe_);
+    const VerifySettings settings = verify_settings_of(recipe_);
+    std::optional<Attempt> best;
     for (const Encoding encoding : encodings) {
-      announce(recipe_, encoding);
-      const auto job = make_job(recipe_, encoding, options_.seed);
-      const auto journal = journal_of(encoding);
-      if (!run_blocks(*job, {0, job->tasks()}, *journal)) return kInterrupted;
-      FinishedBake table(recipe_, *job, *journal);
-      const bool good = measure_error(table, recipe_, options_.preview ? kPreviewPoints : kCheckPoints,
-                                      options_.threads, form_);
+      auto next = attempt(encoding);
+      if (!next) return kInterrupted;
+      const bool good = within_tolerance(next->report, settings);
       if (encodings.size() > 1)
         fmt::print(stderr, "encoding auto: {} {} the tolerances (median {:g}, p99 {:g})\n", name_of(encoding),
-                   good ? "is the smallest that meets" : "misses", recipe_.accuracy.tolerance_median,
-                   recipe_.accuracy.tolerance_p99);
-      if (!good && !options_.preview && encoding != encodings.back()) continue;
-      save(table, options_.output);
-      break;
+                   good ? "is the smallest that meets" : "misses", settings.tolerance_median,
+                   settings.tolerance_p99);
+      if (!best || worst_share(next->report, settings) < worst_share(best->report, settings))
+        best = std::move(next);
+      if (good || options_.preview) break;
     }
+    save(*best->table, options_.output);
     work_->remove();
-    return 0;
+    return options_.preview ? 0 : verdict(options_.output, recipe_, best->report);
   }
 
   // Whether the output is this part and whole.

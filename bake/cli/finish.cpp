@@ -6,12 +6,11 @@
 
 namespace sunbeam {
 
-bool measure_error(FinishedBake& table, const Recipe& recipe, int points, int threads, ProgressForm form) {
-  const VerifyReport report =
-      table.measure_error(points, threads, Progress("verify", "points", points, form));
+VerifyReport measure_error(FinishedBake& table, int points, int threads, ProgressForm form) {
+  VerifyReport report = table.measure_error(points, threads, Progress("verify", "points", points, form));
   fmt::print(stderr, "error median {:.3g} p99 {:.3g} (noise floor {:.3g}), measured at {} points by {}\n",
              report.error.median, report.error.p99, report.noise_floor.median, points, report.truth);
-  return within_tolerance(report, verify_settings_of(recipe));
+  return report;
 }
 
 void save(const FinishedBake& table, const std::string& path) {
@@ -19,6 +18,15 @@ void save(const FinishedBake& table, const std::string& path) {
   const auto& info = table.info();
   fmt::print(stderr, "{}: {}, {} bytes, {} walks of {}\n", path, info.at("encoding"),
              std::filesystem::file_size(path), info.at("samples"), info.at("estimator"));
+}
+
+int verdict(const std::string& path, const Recipe& recipe, const VerifyReport& report,
+            const std::string& advice) {
+  const VerifySettings settings = verify_settings_of(recipe);
+  if (within_tolerance(report, settings)) return 0;
+  fmt::print(stderr, "{}: misses the recipe's tolerances: {}{}\n", path, missed_limits(report, settings),
+             advice);
+  return 1;
 }
 
 }  // namespace sunbeam

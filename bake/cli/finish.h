@@ -8,10 +8,15 @@
 
 namespace sunbeam {
 
-// Measures the table's error. Returns true if it is within the recipe's tolerances.
-bool measure_error(FinishedBake& table, const Recipe& recipe, int points, int threads, ProgressForm form);
+// Measures the table's error.
+VerifyReport measure_error(FinishedBake& table, int points, int threads, ProgressForm form);
 
 // Writes the table.
 void save(const FinishedBake& table, const std::string& path);
+
+// Returns the exit code of a bake that wrote this table: 0, or 1 if it misses what the recipe allows. It then
+// says so, with `advice` behind.
+int verdict(const std::string& path, const Recipe& recipe, const VerifyReport& report,
+            const std::string& advice = "");
 
 }  // namespace sunbeam

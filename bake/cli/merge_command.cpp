@@ -10,6 +10,20 @@
 
 namespace sunbeam {
 
+namespace {
+
+// What to do about a table that misses its tolerances.
+std::string advice(const Recipe& recipe, const std::string& encoding) {
+  const std::string last = name_of(encodings_of(recipe).back());
+  if (encoding == last) return "";
+  return fmt::format(
+      "; a bake in one go would also try encoding \"{0}\": bake the parts again with --set "
+      "table.encoding={0}",
+      last);
+}
+
+}  // namespace
+
 int run_merge(const MergeOptions& options) {
   require_table_extension(options.output);
   Parts parts(options.parts);
@@ -20,17 +34,10 @@ int run_merge(const MergeOptions& options) {
   parts.require_whole(*job);
   require_writable(options.output);
   FinishedBake table(recipe, *job, parts);
-  const bool good =
-      measure_error(table, recipe, kCheckPoints, options.threads, progress_form(options.progress));
+  const VerifyReport report =
+      measure_error(table, kCheckPoints, options.threads, progress_form(options.progress));
   save(table, options.output);
-  const auto encodings = encodings_of(recipe);
-  if (good || identity.encoding == name_of(encodings.back())) return 0;
-  fmt::print(
-      stderr,
-      "{}: misses the recipe's tolerances, and a bake in one go would go on to encoding \"{}\": bake the "
-      "parts again with --set table.encoding={}\n",
-      options.output, name_of(encodings.back()), name_of(encodings.back()));
-  return 1;
+  return verdict(options.output, recipe, report, advice(recipe, identity.encoding));
 }
 
 }  // namespace sunbeam

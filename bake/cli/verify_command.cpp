@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -103,8 +104,9 @@ int run_verify(const VerifyOptions& options) {
   if (!options.html.empty()) write_html(options, table, recipe, settings, report);
 
   const bool passed = within_tolerance(report, settings);
-  fmt::print("{}: median {:.4g} (tolerance {:g}), p99 {:.4g} (tolerance {:g})\n", passed ? "PASS" : "FAIL",
-             report.error.median, settings.tolerance_median, report.error.p99, settings.tolerance_p99);
+  std::vector<std::string> verdicts;
+  for (const Limit& limit : limits(report, settings)) verdicts.push_back(to_string(limit));
+  fmt::print("{}: {}\n", passed ? "PASS" : "FAIL", fmt::join(verdicts, ", "));
   return passed ? 0 : 1;
 }
 

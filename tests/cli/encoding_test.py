@@ -7,14 +7,24 @@ import support
 
 SCATTERING = ("--set", "material.absorption_path=sum", "--set", "material.scattering_per_nm=0.2",
               "--set", "table.azimuths=3")
+# Three cosines are too few for the legs of a rough film.
+FACETS = ("--set", "material.roughness=0.2")
 MULTIPLE = ("--set", "material.roughness=0.3", "--set", 'material.microfacet="multiple"', "--set", "table.azimuths=3")
 
 
 class Encoding(support.CliTest):
+    def encoding(self):
+        return json.loads(self.succeed("info", "table.exr", "--json").out)["encoding"]
+
     def bake(self, *options):
         """The result of a bake, and the encoding inside the table."""
-        result = self.succeed("bake", "tiny.toml", "-o", "table.exr", *options)
-        return result, json.loads(self.succeed("info", "table.exr", "--json").out)["encoding"]
+        return self.succeed("bake", "tiny.toml", "-o", "table.exr", *options), self.encoding()
+
+    def bake_and_miss(self, *options):
+        """The same with a tolerance that no table meets."""
+        result = self.miss("bake", "tiny.toml", "-o", "table.exr", "--set", "accuracy.tolerance_median=1e-6", *options,
+                           figure="error_median")
+        return result, self.encoding()
 
     def test_auto_takes_factored_within_the_tolerances(self):
         result, encoding = self.bake()
@@ -24,22 +34,35 @@ class Encoding(support.CliTest):
         self.assertNotIn("tiny.toml: dense, ", result.err)
 
     def test_auto_falls_back_to_dense(self):
-        result, encoding = self.bake("--set", "accuracy.tolerance_median=1e-6")
+        result, encoding = self.bake(*FACETS, "--set", "accuracy.tolerance_median=0.005")
         self.assertEqual(encoding, "dense")
-        first = result.err.index("encoding auto: factored misses the tolerances (median 1e-06, p99 1)")
+        first = result.err.index("encoding auto: factored misses the tolerances (median 0.005, p99 1)")
         self.assertLess(result.err.index("tiny.toml: factored, "), first)
         self.assertGreater(result.err.index("tiny.toml: dense, "), first)
-        self.assertIn("encoding auto: dense misses the tolerances", result.err)
+        self.assertIn("encoding auto: dense is the smallest that meets the tolerances", result.err)
+
+    def test_auto_keeps_the_better_of_two_that_miss(self):
+        for options, better, worse in (((), "factored", "dense"), (FACETS, "dense", "factored")):
+            with self.subTest(better=better):
+                result, encoding = self.bake_and_miss(*options)
+                self.assertEqual(encoding, better)
+                for tried in (better, worse):
+                    self.assertIn(f"encoding auto: {tried} misses the tolerances (median 1e-06, p99 1)", result.err)
+                errors = {}
+                for asked in (better, worse):
+                    self.bake_and_miss(*options, "--set", f"table.encoding={asked}")
+                    errors[asked] = float(json.loads(self.succeed("info", "table.exr", "--json").out)["error"]["error_median"])
+                self.assertLess(errors[better], errors[worse])
 
     def test_what_is_asked_for_is_taken_without_a_word(self):
         for encoding in ("dense", "factored"):
-            result, found = self.bake("--set", f"table.encoding={encoding}", "--set", "accuracy.tolerance_median=1e-6")
+            result, found = self.bake_and_miss("--set", f"table.encoding={encoding}")
             self.assertEqual(found, encoding)
             self.assertNotIn("encoding auto", result.err)
 
     def test_auto_of_what_has_no_factors_is_dense(self):
         for options in (SCATTERING, MULTIPLE):
-            result, encoding = self.bake(*options)
+            result, encoding = self.bake(*options, "--set", "accuracy.tolerance_median=1")  # 3 azimuths are few
             self.assertEqual(encoding, "dense")
             self.assertNotIn("encoding auto", result.err)
 

@@ -59,10 +59,18 @@ class Merge(PartsTest):
                 "accuracy.tolerance_p99=0.006", "--set", "material.roughness=0.2")
         for k in (1, 2):
             self.succeed("bake", "tiny.toml", *auto, "--shard", f"{k}/2", "-o", f"auto_{k}.part")
-        result = self.sunbeam("merge", "auto_1.part", "auto_2.part", "-o", "auto.exr")
-        self.assertEqual(result.code, 1, result)
+        result = self.miss("merge", "auto_1.part", "auto_2.part", "-o", "auto.exr", figure="error_median")
         self.assertRegex(result.err.splitlines()[-1], r"auto.exr: misses the recipe's tolerances.*--set table.encoding=\w+$")
         self.succeed("info", "auto.exr")
+
+    def test_a_table_beyond_its_tolerances_without_another_encoding(self):
+        strict = ("--set", "table.encoding=dense", "--set", "accuracy.tolerance_median=1e-6")
+        self.succeed("bake", "tiny.toml", *strict, "--shard", "1/1", "-o", "strict.part")
+        merged = self.miss("merge", "strict.part", "-o", "strict.exr", figure="error_median")
+        self.assertNotIn("table.encoding", merged.err)
+        baked = self.miss("bake", "tiny.toml", *strict, "-o", "strict_one.exr", figure="error_median")
+        self.assertEqual((self.folder / "strict.exr").read_bytes(), (self.folder / "strict_one.exr").read_bytes())
+        self.assertEqual(merged.err.splitlines()[-1].replace("strict", "strict_one"), baked.err.splitlines()[-1])
 
 
 class Refused(PartsTest):

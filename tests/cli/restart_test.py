@@ -339,6 +339,12 @@ class Preview(support.CliTest):
         self.assertLess(info["bytes"], 200000)
         self.assertLess(float(info["error"]["error_median"]), 0.001)
 
+    def test_states_its_error_and_succeeds_whatever_it_is(self):
+        result = self.succeed("bake", "tiny.toml", "-o", "coarse.exr", "--preview", "--set", "accuracy.tolerance_median=1e-6")
+        stated = float(json.loads(self.succeed("info", "coarse.exr", "--json").out)["error"]["error_median"])
+        self.assertGreater(stated, 1e-6)
+        self.assertIn(f"error median {stated:.3g} ", result.err)
+
     def test_is_of_one_machine(self):
         self.refuse("bake", "tiny.toml", "-o", "tiny.part", "--preview", "--shard", "1/2", naming=["--preview", "--shard"])
 

@@ -207,6 +207,15 @@ class CliTest(unittest.TestCase):
         self.assertEqual(result.code, 0, result)
         return result
 
+    def miss(self, *arguments, figure, **options):
+        """Runs a bake or merge and expects a table that misses the tolerances of its recipe by this figure: exit code 1, and the
+        last line says so."""
+        result = self.sunbeam(*arguments, **options)
+        self.assertEqual(result.code, 1, result)
+        self.assertRegex(result.err.splitlines()[-1],
+                         rf"^\S+: misses the recipe's tolerances: .*\b{figure} \S+ \(allowed \S+\)", result)
+        return result
+
     def names(self):
         return sorted(entry.name for entry in self.folder.iterdir())
 

@@ -232,6 +232,67 @@ TEST(Verify, DefaultTruth) {
   EXPECT_EQ(truth("scattering_per_nm = 1", "tolerance_median = 0.002"), Estimator::exact);
 }
 
+VerifyReport report_of(double median, double p99, double max, double energy) {
+  VerifyReport report;
+  report.error = {median, p99, p99, max};
+  report.energy = energy;
+  return report;
+}
+
+// Tolerances of 0.01 and 0.05: the energy may be above 1 by three times error_max, but by 0.05 at most, and
+// always by 0.001.
+TEST(Verify, LimitsOfToleranceAndEnergy) {
+  const VerifySettings s = settings(1, 0.01);
+  const auto missed = [&](const VerifyReport& report) {
+    EXPECT_EQ(within_tolerance(report, s), missed_limits(report, s).empty());
+    EXPECT_EQ(within_tolerance(report, s), worst_share(report, s) <= 1);
+    return missed_limits(report, s);
+  };
+  EXPECT_EQ(missed(report_of(0.01, 0.05, 9, 0.9)), "");
+  EXPECT_EQ(missed(report_of(0.0101, 0.05, 9, 0.9)), "error_median 0.0101 (allowed 0.01)");
+  EXPECT_EQ(missed(report_of(0.01, 0.0501, 9, 0.9)), "error_p99 0.0501 (allowed 0.05)");
+  EXPECT_EQ(missed(report_of(0, 0, 9, 1.0499)), "");
+  EXPECT_EQ(missed(report_of(0, 0, 9, 2.73)), "energy 2.73 (allowed 1.05)");
+  EXPECT_EQ(missed(report_of(0, 0, 0.01, 1.0299)), "");
+  EXPECT_EQ(missed(report_of(0, 0, 0.01, 1.0301)), "energy 1.03 (allowed 1.03)");
+  EXPECT_EQ(missed(report_of(0, 0, 0, 1.0009)), "");
+  EXPECT_EQ(missed(report_of(0, 0, 0, 1.0011)), "energy 1.001 (allowed 1.001)");
+  EXPECT_EQ(missed(report_of(0.1, 0.2, 0.2, 1.2)),
+            "error_median 0.1 (allowed 0.01), error_p99 0.2 (allowed 0.05), energy 1.2 (allowed 1.05)");
+  EXPECT_NE(missed(report_of(0, 0, 0, NAN)), "");
+  EXPECT_NE(missed(report_of(NAN, 0, 0, 0.5)), "");
+}
+
+// The better of two tables is the one whose worst figure is the smaller share of what is allowed.
+TEST(Verify, WorstShareOrdersTables) {
+  const VerifySettings s = settings(1, 0.01);
+  EXPECT_NEAR(worst_share(report_of(0.02, 0.02, 0.02, 0.5), s), 2, 1e-12);
+  EXPECT_NEAR(worst_share(report_of(0.005, 0.15, 0.2, 0.5), s), 3, 1e-12);
+  EXPECT_NEAR(worst_share(report_of(0.005, 0.01, 0.2, 2.1), s), 2, 1e-12);
+  EXPECT_EQ(worst_share(report_of(0.005, NAN, 0.2, 0.5), s), std::numeric_limits<double>::infinity());
+}
+
+// A white base under no film and a clear pigment sends everything back. The channels of a fold then hold 1,
+// and so does the energy; scaled up, both grow with the table. A table in Rec.709 may hold more than 1 in a
+// channel.
+TEST(Verify, EnergyIsTheShareThatReturns) {
+  for (const char* spectrum :
+       {"mode = \"rgb3\"", "mode = \"full\"", "mode = \"full\"\ncolor_space = \"rec709\""}) {
+    test::SmallRecipe recipe;
+    recipe.roughness = 0;
+    recipe.absorption_per_nm = 0;
+    recipe.albedo = 1;
+    recipe.noise = 0.002;
+    recipe.spectrum = spectrum;
+    Table table = test::baked(recipe);
+    EXPECT_NEAR(verify(table, settings(10, 0.1)).energy, 1, 0.01) << spectrum;
+    for (float& value : table.remainder.values()) value *= 1.5f;
+    const VerifyReport bright = verify(table, settings(10, 0.1));
+    EXPECT_GT(bright.energy, 1.05) << spectrum;
+    EXPECT_LE(bright.energy, bright.energy_max * (1 + 1e-9)) << spectrum;
+  }
+}
+
 TEST(Verify, FigureNames) {
   std::vector<std::string> names;
   for (const auto& [name, value] : figures(verify(clear_table(), settings(2, 0.1)))) {

@@ -8,6 +8,7 @@
 #include "bake/cli/commands.h"
 #include "bake/cli/finish.h"
 #include "bake/cli/interrupt.h"
+#include "bake/dense/lobes.h"
 #include "bake/jobs/bake.h"
 #include "bake/jobs/preview.h"
 #include "bake/jobs/work_folder.h"
@@ -39,6 +40,7 @@ class BakeCommand {
       : options_(options),
         form_(progress_form(options.progress)),
         recipe_(load_recipe(options.recipe, options.overrides)) {
+    require_wide_lobes(recipe_);
     if (options.preview) recipe_ = preview_of(recipe_);
     for (const Encoding encoding : encodings_of(recipe_)) require_reasonable_size(recipe_, encoding);
     require_writable(options.output);

@@ -6,7 +6,7 @@
 namespace sunbeam {
 
 // Says how a table holds the rest (sunbeam/table.h). `automatic` takes the smallest encoding whose measured
-// error meets the recipe's tolerances.
+// error meets the recipe's tolerances, or the best if none does.
 enum class Encoding { automatic, dense, factored };
 
 constexpr const char* name_of(Encoding encoding) {

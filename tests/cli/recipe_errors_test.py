@@ -105,6 +105,18 @@ class RecipeErrors(support.CliTest):
                 self.refuse("bake", name, "-o", "out.exr",
                             naming=["bad.toml:4: ", "'table.azimuths'", f"found {value}", needle])
 
+    def test_lobes_that_no_table_of_these_nodes_holds(self):
+        facets = ("--set", "material.roughness=0.001", "--set", 'material.microfacet="multiple"')
+        back = ("--set", "material.absorption_path=sum", "--set", "material.scattering_per_nm=0.5", "--set",
+                "material.anisotropy=-0.99", "--set", "table.azimuths=9")
+        for options, needles in (
+            (facets, ("'table.azimuths'", "found 9", 'microfacet "multiple"', "allowed with roughness 0.001: 12 to 512")),
+            (back, ("'material.anisotropy'", "found -0.99", "3 cosines", "to 0.99", "table.angles")),
+        ):
+            for more in ((), ("--preview",), ("--shard", "1/2")):
+                with self.subTest(options=options, more=more):
+                    self.refuse("bake", "tiny.toml", "-o", "out.exr", *options, *more, naming=["tiny.toml: key ", *needles])
+
     def test_full_spectrum_keys_need_mode_full(self):
         for key, value in (("illuminant", '"D65"'), ("color_space", '"acescg"')):
             self.check("spectrum", key, value, "rgb3", 'allowed with "full" only')

@@ -95,6 +95,17 @@ class Verify(support.CliTest):
         self.assertGreater(report["error_median"], 0.003)
         self.assertLess(report["error_p99"], 1.0)
 
+    def test_a_table_that_returns_more_than_arrives_fails(self):
+        """A white base under a pigment that sends light straight back: eight cosines widen the lobe."""
+        self.miss("bake", "tiny.toml", "-o", "bright.exr", "--set", "material.absorption_path=sum", "--set", "material.albedo=1",
+                  "--set", "grid.absorption_per_nm=[0]", "--set", "grid.film_thickness_nm=[300]", "--set",
+                  "material.scattering_per_nm=1", "--set", "material.anisotropy=-0.75", "--set", "table.angles=8", "--set",
+                  "table.azimuths=3", "--set", "accuracy.tolerance_median=1", "--set", "accuracy.tolerance_p99=0.03",
+                  figure="energy")
+        report, result = self.report("bright.exr", "--points", "250", code=1)
+        self.assertGreater(report["energy_max"], 1.1)
+        self.assertRegex(result.out, r"(?m)^FAIL: .*, energy 1\.\d+ \(allowed 1\.03\)$")
+
     def test_threads_form_and_repetition_do_not_matter(self):
         reports = [self.report(*arguments, *POINTS)[0] for arguments in (
             ("good.exr", "--threads", "1"), ("good.exr", "--threads", "2"), ("good.vdb",))]

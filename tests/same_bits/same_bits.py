@@ -35,7 +35,7 @@ RECIPES = {
     "dense anisotropic": ("table.encoding=dense", "table.azimuths=4", ROUGHNESSES, "material.absorption_path=product"),
     "dense walked slab": (*SLAB, "table.values=walks", "accuracy.estimator=bidirectional"),
     "dense solved slab": (*SLAB, "spectrum.mode=full"),
-    "multiple facets": ("table.encoding=dense", "table.azimuths=2", "material.microfacet=multiple"),
+    "multiple facets": ("table.encoding=dense", "table.azimuths=4", "material.microfacet=multiple"),
 }
 
 # What is baked of each, in this order. Measuring its error is most of the time of each.

@@ -14,9 +14,9 @@ inline namespace v1 {
 
 class RestFrame {
  public:
-  // Where the remainder does not decay it has lobes, of a peaked phase function or of nearly smooth facets at
-  // grazing, too high for a half float, which ends at 65504, and too narrow for any table. encode() cuts
-  // them.
+  // Where the remainder does not decay it may have lobes too high for a half float, which ends at 65504: of
+  // nearly smooth facets at grazing. encode() cuts them. What is too narrow for a table is refused before a
+  // bake (bake/dense/lobes.h).
   static constexpr double kLargestRemainder = 60000;
 
   // Makes the frame of a material. `first_visit` is that of Table: empty for rgb3.

@@ -55,10 +55,11 @@ struct WalkContext {
     for (int j = 0; j < count; ++j) power[j] *= factor;
   }
 
-  // Keeps `power` at `least` in the mean by ending walks below it. False if this one ends.
+  // Keeps `power` at `least` in the mean by ending walks below it. False if this one ends, as all without
+  // power do.
   bool survives(Powers& power, double least, Rng& rng) const {
     const double left = total(power);
-    if (left >= least) return true;
+    if (left >= least && left > 0) return true;
     if (!(rng.uniform() * least < left)) return false;
     scale(power, least / left);
     return true;

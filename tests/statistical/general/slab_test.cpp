@@ -204,6 +204,19 @@ TEST(Slab, NoScatteringIsThePlainPigment) {
   }
 }
 
+// Light that a smooth film reflects totally never comes in, and its walks end all the same.
+TEST(Slab, NothingEntersBeyondTotalReflection) {
+  Material m = slab(0, Transmission::straight, 0.5, 0.9, 0);
+  m.exterior_ior = 1.5;
+  m.base_ior = 1.2;
+  const Vec3 wo = spherical_direction(0.2, 0), wi = spherical_direction(1.3, 2);
+  for (const Technique technique : kTechniques) {
+    Rng rng(12, 0);
+    for (int i = 0; i < 20; ++i)
+      EXPECT_NEAR(Pfmc(m).estimate_rest(wo, wi, rng, technique).g, 0, 1e-12) << name_of(technique);
+  }
+}
+
 // A slab that hardly scatters is nearly the plain one. 4 films x 2 techniques x 3 channels at 4.5 standard
 // errors: 1.6e-4.
 TEST(Slab, LittleScatteringTendsToThePlainPigment) {

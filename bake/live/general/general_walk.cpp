@@ -1,5 +1,6 @@
 #include "bake/live/general/general_walk.h"
 
+#include "bake/live/general/exit_guide.h"
 #include "bake/live/general/facets_part.h"
 #include "bake/live/general/film_crossing.h"
 #include "sunbeam/detail/warp.h"
@@ -14,8 +15,20 @@ int camera_events(const Slab& slab) {
   return std::min(2 + static_cast<int>(slab.g / (1 - slab.g)), kMostCameraEvents);
 }
 
+// Light below the film that is about to go on, and what roulette keeps of it.
+struct BelowFilm {
+  double depth;
+  Vec3 travel;
+  Powers power;
+  double least;
+  int splits = 0;  // that have led to it
+};
+
+// Walks of more splits than these are not split on.
+constexpr int kMostSplits = 6;
+
 // Up from the base, which light reached at the cosine `arrived`.
-void leave_base(const WalkContext& walk, Powers& power, double arrived, Vec3& travel, Rng& rng) {
+void draw_from_base(const WalkContext& walk, Powers& power, double arrived, Vec3& travel, Rng& rng) {
   if (walk.is_chance) {
     travel = sample_cosine({rng.uniform(), rng.uniform()});
     return;
@@ -27,36 +40,90 @@ void leave_base(const WalkContext& walk, Powers& power, double arrived, Vec3& tr
     for (int j = 0; j < walk.count; ++j) power[j] *= std::exp(-walk.layers.tau[j] / (arrived * travel.z));
 }
 
-// Between film and base until the walk ends. `visit` has: kIsCamera; leg(flight), of every straight leg;
-// meet(depth, travel, power) before and scattered(phase, depth, travel, power) after a scattering event;
-// thrown_back(travel, power) from the film; at_base(cosine, power), false to end there.
 template <class Visit>
-void walk_below(const WalkContext& walk, Vec3 travel, Powers& power, Rng& rng, Visit& visit) {
+void follow(const WalkContext& walk, const ExitGuide& guide, BelowFilm& light, Rng& rng, Visit& visit);
+
+// Splits light that has left an event along `light.travel`. `wanted` gives what the event sends along a
+// travel, `natural` the density with which it draws it; `before` is the power that reached it.
+template <class Wanted, class Natural, class Visit>
+void split(const WalkContext& walk, const ExitGuide& guide, const Powers& before, BelowFilm& light,
+           Wanted wanted, Natural natural, Rng& rng, Visit& visit) {
+  const auto weigh = [&](const Vec3& travel) {
+    const double value = wanted(travel);
+    return value > 0 ? value / (natural(travel) + guide.density(travel)) : 0;
+  };
+  BelowFilm other = light;
+  other.travel = guide.sample(rng);
+  other.power = before;
+  other.splits = light.splits + 1;
+  walk.scale(other.power, weigh(other.travel));
+  light.power = before;
+  walk.scale(light.power, weigh(light.travel));
+  if (walk.survives(other.power, other.least / guide.worth(other.travel), rng))
+    follow(walk, guide, other, rng, visit);
+}
+
+// Lets light scatter where it is.
+template <class Visit>
+void scatter(const WalkContext& walk, const ExitGuide& guide, BelowFilm& light, Rng& rng, Visit& visit) {
   const Slab& slab = walk.general.slab;
-  const double least = kFaint * walk.total(power);
-  double depth = 0;
+  visit.meet(light.depth, light.travel, light.power);
+  const Vec3 before = light.travel;
+  const auto phase = [&](const Vec3& next) { return slab.phase(dot(before, next)); };
+  light.travel = slab.sample_phase(before, rng);
+  if (guide.is_on() && light.splits < kMostSplits) {
+    const Powers power = light.power;
+    split(walk, guide, power, light, phase, phase, rng, visit);
+  }
+  visit.scattered(phase(light.travel), light.depth, light.travel, light.power);
+}
+
+// Lets the base throw light back that reached it at the cosine `arrived`.
+template <class Visit>
+void leave_base(const WalkContext& walk, const ExitGuide& guide, BelowFilm& light, double arrived, Rng& rng,
+                Visit& visit) {
+  Powers power = light.power;
+  draw_from_base(walk, light.power, arrived, light.travel, rng);
+  if (!guide.is_on() || light.splits >= kMostSplits) return;
+  for (int j = 0; j < walk.count; ++j) power[j] *= walk.layers.albedo[j];
+  const auto lambert = [](const Vec3& up) { return up.z * kInvPi; };
+  const auto drawn = [&](const Vec3& up) { return lambert(up) * walk.layers.guide.density(square(up.z)); };
+  split(walk, guide, power, light, lambert, drawn, rng, visit);
+}
+
+// Between film and base until the walk ends, with the help of `guide`. `visit` has: kIsCamera; leg(flight),
+// of every straight leg; meet(depth, travel, power) before and scattered(phase, depth, travel, power) after a
+// scattering event; thrown_back(travel, power) from the film; at_base(cosine, power), false to end there.
+template <class Visit>
+void follow(const WalkContext& walk, const ExitGuide& guide, BelowFilm& light, Rng& rng, Visit& visit) {
+  const Slab& slab = walk.general.slab;
+  Vec3& travel = light.travel;
   for (;;) {
-    const Leg leg = next_leg(slab, depth, travel, rng);
-    walk.attenuate(leg.length, power);
+    const Leg leg = next_leg(slab, light.depth, travel, rng);
+    walk.attenuate(leg.length, light.power);
     visit.leg(slab.flight(leg.length * leg.cosine, leg.cosine));
     if (leg.scatters) {
-      depth = depth_after(leg, depth, travel);
-      visit.meet(depth, travel, power);
-      const Vec3 next = slab.sample_phase(travel, rng);
-      const double phase = slab.phase(dot(travel, next));
-      travel = next;
-      visit.scattered(phase, depth, travel, power);
+      light.depth = depth_after(leg, light.depth, travel);
+      scatter(walk, guide, light, rng, visit);
     } else if (travel.z < 0) {
-      depth = 1;
-      if (!visit.at_base(leg.cosine, power)) return;
-      leave_base(walk, power, leg.cosine, travel, rng);
+      light.depth = 1;
+      if (!visit.at_base(leg.cosine, light.power)) return;
+      leave_base(walk, guide, light, leg.cosine, rng, visit);
     } else {
-      depth = 0;
-      if (!reflect_below(walk, travel, Visit::kIsCamera, power, rng)) return;
-      visit.thrown_back(travel, power);
+      light.depth = 0;
+      if (!reflect_below(walk, travel, Visit::kIsCamera, light.power, rng)) return;
+      visit.thrown_back(travel, light.power);
     }
-    if (!walk.survives(power, least, rng)) return;
+    if (!walk.survives(light.power, light.least / guide.worth(travel), rng)) return;
   }
+}
+
+// The same from the film, where light sets out along `travel`.
+template <class Visit>
+void walk_below(const WalkContext& walk, const ExitGuide& guide, const Vec3& travel, const Powers& power,
+                Rng& rng, Visit& visit) {
+  BelowFilm light{0, travel, power, kFaint * walk.total(power)};
+  follow(walk, guide, light, rng, visit);
 }
 
 // Slab part: light that scatters at `depth`, towards what lies at the depth `origin` against y and carries
@@ -246,7 +313,7 @@ void GeneralWalk::add_unidirectional(const Vec3& wi, const Vec3* wo, int exits, 
     Vec3 travel;
     if (!draw_entry(walk, wi, exit, exits, power, travel, rng, sums)) continue;
     LightVisit visit{walk, exit, exits, sums};
-    walk_below(walk, travel, power, rng, visit);
+    walk_below(walk, ExitGuide(walk.general.slab, exit, exits), travel, power, rng, visit);
     for (int j = 0; j < walk.count; ++j) light[j] += visit.arrived[j];
   }
   if (walk.layers.product && !walk.is_chance) return;
@@ -261,6 +328,7 @@ void GeneralWalk::add_bidirectional(const Vec3& wi, const Vec3* wo, int exits, R
   ExitPath* exit = workspace().exit.data();
   const int most_events = camera_events(walk.general.slab);
   CameraVisit* seen = workspace().seen.data();
+  const ExitGuide unguided(walk.general.slab, nullptr, 0);
   for (int n = 0; n < kGeneralWalks; ++n) {
     for (int k = 0; k < exits; ++k) {
       draw_exit(walk, wo[k], exit[k], rng);
@@ -268,14 +336,14 @@ void GeneralWalk::add_bidirectional(const Vec3& wi, const Vec3* wo, int exits, R
       if (!exit[k].is_open) continue;
       Powers power = exit[k].power;
       seen[k].add(0, -exit[k].up, power);
-      walk_below(walk, -exit[k].up, power, rng, seen[k]);
+      walk_below(walk, unguided, -exit[k].up, power, rng, seen[k]);
       for (int j = 0; j < walk.count; ++j) leaving[k][j] += seen[k].arrived[j];
     }
     Powers power;
     Vec3 travel;
     if (!draw_entry(walk, wi, exit, exits, power, travel, rng, sums)) continue;
     PairedLightVisit visit{walk, seen, exits, most_events, sums};
-    walk_below(walk, travel, power, rng, visit);
+    walk_below(walk, unguided, travel, power, rng, visit);
     for (int j = 0; j < walk.count; ++j) light[j] += visit.arrived[j];
   }
   for (int k = 0; k < exits; ++k)

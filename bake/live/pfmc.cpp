@@ -25,7 +25,11 @@ Pfmc::Pfmc(const Material& material, const Wavelengths& wavelengths, const walk:
   if (family_ == Family::facets) forecast_visits();
 }
 
+// Packets seldom come in where light passes few facets; the general walk looks for these.
 Pfmc::Family Pfmc::family_of(const Material& material) {
+  const bool reflects_totally =
+      critical_cosine(material.exterior_ior, material.base_ior) > 0 && !material.is_smooth();
+  if (reflects_totally) return Family::general;
   if (material.is_plain()) return Family::plain;
   return !material.scatters() && material.roughness.is_isotropic() ? Family::facets : Family::general;
 }

@@ -67,6 +67,11 @@ class Microsurface {
     return ggx_.sample_visible(-x, {rng.uniform(), rng.uniform()});
   }
 
+  // Returns the density of sample_facet(), 1/sr.
+  double visible_density(const Vec3& x, const Vec3& h) const {
+    return std::max(0.0, -dot(x, h)) * ggx_.d(h) / area(x);
+  }
+
   // Flies on to the next facet, which is certain on the way down. Returns false if light on its way up
   // escapes.
   bool fly(Place& at, Rng& rng) const {

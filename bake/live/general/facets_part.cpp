@@ -99,7 +99,7 @@ void follow_facets(const WalkContext& walk, const Vec3& wi, const ExitPath* exit
     origin = at.depth;
     walk.scale(path.power, taken.stays);
     facets.fly_back(at, rng);
-    if (path.order == 0) least = kFaint * walk.total(path.power);
+    least = path.order == 0 ? kFaint * walk.total(path.power) : least * taken.met;
     if (!(walk.total(path.power) > 0) || !walk.survives(path.power, least, rng)) return;
   }
 }

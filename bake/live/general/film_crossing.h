@@ -5,11 +5,34 @@
 
 namespace sunbeam::walk {
 
-// What a facet has done with light, and the weight of what stays.
+// What a facet has done with light, the weight of what stays, and that of the facet, which roulette forgives.
 struct FacetTurn {
   enum Kind { lost, mirrored, passed } kind;
-  double stays;
+  double stays, met;
 };
+
+// A facet, and the factor of the light that meets it.
+struct FacetMet {
+  Vec3 normal;
+  double weight;
+};
+
+// The facet that light from outside meets along `travel`. Beyond total reflection few facets let it pass, so
+// half of them are drawn from the cone of those that do, evenly; no weight exceeds two.
+inline FacetMet meet_from_outside(const WalkContext& walk, const Vec3& travel, Rng& rng) {
+  const Microsurface& facets = walk.general.facets;
+  const double critical = walk.general.critical_cosine;
+  if (-travel.z >= critical) return {facets.sample_facet(travel, rng), 1};
+  Vec3 h;
+  if (rng.uniform() < 0.5)
+    h = facets.sample_facet(travel, rng);
+  else
+    h = Frame::from_normal(-travel).to_world(
+        direction_from_cosine(lerp(rng.uniform(), critical, 1), 2 * kPi * rng.uniform()));
+  const double visible = facets.visible_density(travel, h);
+  const double drawn = dot(-travel, h) > critical ? 1 / (2 * kPi * (1 - critical)) : 0;
+  return {h, visible > 0 ? visible / lerp(0.5, visible, drawn) : 0};
+}
 
 // The facet that light against `w` meets, of single ones.
 inline Vec3 sample_normal(const WalkContext& walk, const Vec3& w, Rng& rng) {
@@ -35,12 +58,14 @@ inline double index_ratio_from(const WalkContext& walk, Side side) {
 // it is lost.
 inline bool pass_once(const WalkContext& walk, const Vec3& w, bool is_camera, Powers& power, Vec3& travel,
                       Rng& rng) {
-  const Vec3 h = sample_normal(walk, w, rng);
+  const FacetMet met = walk.layers.is_smooth() ? FacetMet{{0, 0, 1}, 1} : meet_from_outside(walk, -w, rng);
+  const Vec3& h = met.normal;
   Vec3 m = w;
+  if (met.weight == 0) return false;
   if (walk.layers.bends && (!refract(w, h, walk.layers.index_ratio, m) || m.z <= 0)) return false;
   Powers r;
   walk.reflectances({Side::outside, -w, 0, !is_camera}, dot(w, h), r);
-  const double share = walk.layers.straight ? 1 : shadowing(walk, w, m, is_camera);
+  const double share = met.weight * (walk.layers.straight ? 1 : shadowing(walk, w, m, is_camera));
   for (int j = 0; j < walk.count; ++j) power[j] = (1 - r[j]) * share;
   travel = -m;
   return true;
@@ -58,11 +83,16 @@ inline constexpr double kFixedMirrors = 0.7;
 
 // One facet: light goes on mirrored or passing, in proportion to the power that stays(place) says is still of
 // use there; `through`, the same for light that leaves facets as a whole behind (straight); the share `fixed`
-// of the choice looks at no power. `power` is weighed for the choice alone.
+// of the choice looks at no power. `power` is weighed for facet and choice alone.
 template <class Stays>
 FacetTurn take_turn(const WalkContext& walk, Place& at, Powers& power, double through, double fixed, Rng& rng,
                     Stays stays) {
-  const Vec3 h = walk.general.facets.sample_facet(at.travel, rng);
+  const FacetMet met = at.side == Side::outside
+                           ? meet_from_outside(walk, at.travel, rng)
+                           : FacetMet{walk.general.facets.sample_facet(at.travel, rng), 1};
+  if (met.weight == 0) return {FacetTurn::lost, 0, 1};
+  walk.scale(power, met.weight);
+  const Vec3& h = met.normal;
   Powers r;
   walk.reflectances(at, -dot(at.travel, h), r);
   Place mirrored{at.side, reflect(-at.travel, h), at.depth}, passed;
@@ -73,17 +103,17 @@ FacetTurn take_turn(const WalkContext& walk, Place& at, Powers& power, double th
   for (int j = 0; j < walk.count; ++j) share_r += power[j] * r[j], share_t += power[j] * (1 - r[j]);
   share_r *= stays_r, share_t *= stays_t;
   const double sum = share_r + share_t;
-  if (!(sum > 0)) return {FacetTurn::lost, 0};
+  if (!(sum > 0)) return {FacetTurn::lost, 0, 1};
   double chance_r = share_r / sum;
   if (share_r > 0 && share_t > 0) chance_r = lerp(fixed, chance_r, kFixedMirrors);
   if (rng.uniform() < chance_r) {
     for (int j = 0; j < walk.count; ++j) power[j] *= r[j] / chance_r;
     at = mirrored;
-    return {FacetTurn::mirrored, stays_r};
+    return {FacetTurn::mirrored, stays_r, met.weight};
   }
   for (int j = 0; j < walk.count; ++j) power[j] *= (1 - r[j]) / (1 - chance_r);
   at = passed;
-  return {FacetTurn::passed, stays_t};
+  return {FacetTurn::passed, stays_t, met.weight};
 }
 
 // Many facets, from the first one met at `at` until light comes out below: `travel` is its way down. What
@@ -96,9 +126,10 @@ bool wander(const WalkContext& walk, Place at, Powers& power, Vec3& travel, Rng&
   const auto stays = [&](const Place& place) {
     return place.side == Side::outside ? 1 - facets.escape_chance(place) : 1;
   };
-  const double least = kFaint * walk.total(power);
+  double least = kFaint * walk.total(power);
   for (bool only_passed = true;;) {
     const FacetTurn taken = take_turn(walk, at, power, through, 0, rng, stays);
+    least *= taken.met;
     if (taken.kind == FacetTurn::lost) return false;
     if (taken.kind == FacetTurn::passed && walk.layers.straight) return true;
     only_passed = only_passed && taken.kind == FacetTurn::passed;

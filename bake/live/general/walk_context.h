@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bake/live/film/microsurface.h"
+#include "bake/live/film/visible_normals.h"
 #include "bake/live/general/slab.h"
 #include "bake/live/walks/kernels.h"
 
@@ -15,11 +16,14 @@ struct GeneralLayers {
   explicit GeneralLayers(const Material& material)
       : facets(material.roughness),
         multiple(material.has_multiple_facets()),
-        slab{material.scattering_depth(), material.anisotropy} {}
+        slab{material.scattering_depth(), material.anisotropy},
+        critical_cosine(material.is_smooth() ? 0 : sunbeam::critical_cosine(ThinFilm::of(material))) {}
 
   Microsurface facets;
   bool multiple;
   Slab slab;
+  double
+      critical_cosine;  // a rough film's, from outside: below it light passes tilted facets alone; 0 if none
 };
 
 // What a walk carries: power, or the chance of sample().

@@ -9,8 +9,8 @@
 #include <ostream>
 #include <set>
 
-#include "bake/base/running_mean.h"
 #include "bake/check/csv.h"
+#include "bake/check/walked_mean.h"
 #include "bake/live/exact/exact.h"
 #include "bake/live/pfmc.h"
 #include "sunbeam/core/error.h"
@@ -114,19 +114,6 @@ class PointReader {
   std::vector<std::size_t> material_columns_;
 };
 
-// A value and its standard error, per channel.
-struct Estimate {
-  Rgb value, standard_error;
-};
-
-template <class Call>
-Estimate mean_of_estimates(std::int64_t samples, Call call) {
-  RunningMean cell;
-  for (std::int64_t k = 0; k < samples; ++k) cell.add(call());
-  const auto count = static_cast<double>(samples);
-  return {cell.mean_of(count), cell.standard_error(count)};
-}
-
 // The rows of a live recipe at one material, by PFMC or exactly.
 class LivePoint {
  public:
@@ -142,7 +129,7 @@ class LivePoint {
   }
 
   Results brdf() {
-    const Estimate rest = exact_ ? Estimate{exact_->rest(point_.wo, point_.wi), Rgb()} : walked_rest();
+    const WalkedMean rest = exact_ ? WalkedMean{exact_->rest(point_.wo, point_.wi), Rgb()} : walked_rest();
     return {{"first", model_.first(point_.wo, point_.wi)},
             {"rest", rest.value},
             {"stderr", rest.standard_error},
@@ -151,25 +138,24 @@ class LivePoint {
   }
 
   Results albedo() {
-    const Estimate total = exact_ ? Estimate{exact_->albedo(point_.wi), Rgb()} : walked_albedo();
+    const WalkedMean total = exact_ ? WalkedMean{exact_->albedo(point_.wi), Rgb()} : walked_albedo();
     return {{"total", total.value}, {"stderr", total.standard_error}};
   }
 
   Results film() const { return {{"reflectance", model_.film_reflectance(point_.wi.z)}}; }
 
  private:
-  Estimate walked_rest() {
-    return mean_of_estimates(samples_,
-                             [&] { return model_.estimate_rest(point_.wo, point_.wi, rng_, technique_); });
+  WalkedMean walked_rest() {
+    return walked_mean(samples_,
+                       [&] { return model_.estimate_rest(point_.wo, point_.wi, rng_, technique_); });
   }
   Rgb walked_pdf() {
-    return mean_of_estimates(samples_, [&] { return Rgb(model_.estimate_pdf(point_.wo, point_.wi, rng_)); })
-        .value;
+    return walked_mean(samples_, [&] { return Rgb(model_.estimate_pdf(point_.wo, point_.wi, rng_)); }).value;
   }
 
   // The Dirac part exactly, everything else from walks.
-  Estimate walked_albedo() {
-    Estimate total = mean_of_estimates(samples_, [&] {
+  WalkedMean walked_albedo() {
+    WalkedMean total = walked_mean(samples_, [&] {
       const auto sample = model_.sample(point_.wi, rng_);
       return sample && !sample->is_dirac ? sample->throughput : Rgb();
     });

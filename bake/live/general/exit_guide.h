@@ -42,7 +42,7 @@ class ExitGuide {
   double worth(const Vec3& travel) const { return is_on() ? std::max(1.0, 4 * kPi * density(travel)) : 1; }
 
  private:
-  static constexpr double kLeastPeak = 0.4;  // |g|; a lower peak is met by chance
+  static constexpr double kLeastPeak = 0.7;  // |g|; a lower peak is met by chance
 
   const Slab& slab_;
   const ExitPath* exits_;

@@ -78,12 +78,15 @@ void scatter(const WalkContext& walk, const ExitGuide& guide, BelowFilm& light, 
   visit.scattered(phase(light.travel), light.depth, light.travel, light.power);
 }
 
-// Lets the base throw light back that reached it at the cosine `arrived`.
+// Lets the base throw light back that reached it at the cosine `arrived`. With "product" the pigment may
+// spare later visits, and roulette forgives what it has taken.
 template <class Visit>
 void leave_base(const WalkContext& walk, const ExitGuide& guide, BelowFilm& light, double arrived, Rng& rng,
                 Visit& visit) {
   Powers power = light.power;
   draw_from_base(walk, light.power, arrived, light.travel, rng);
+  if (walk.layers.product && !walk.is_chance)
+    light.least *= std::exp(-walk.layers.least_tau / (arrived * light.travel.z));
   if (!guide.is_on() || light.splits >= kMostSplits) return;
   for (int j = 0; j < walk.count; ++j) power[j] *= walk.layers.albedo[j];
   const auto lambert = [](const Vec3& up) { return up.z * kInvPi; };

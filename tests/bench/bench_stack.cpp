@@ -14,8 +14,8 @@
 namespace sunbeam {
 namespace {
 
-constexpr double kOpticalThickness[] = {0.1, 1, 5};
-constexpr double kMeanCosine[] = {0, 0.5, 0.9};
+constexpr double kOpticalThickness[] = {0.1, 0.3, 1, 3, 5};
+constexpr double kMeanCosine[] = {0, 0.5, 0.9, 0.95, 0.99};
 constexpr double kRoughness[] = {0.05, 0.1, 0.3, 0.6, 1};
 
 const Vec3 kWo = spherical_direction(40 * kPi / 180, 0);
@@ -66,7 +66,7 @@ void slab(benchmark::State& state) {
   };
   report(state, alternate(state, by(Technique::unidirectional), by(Technique::bidirectional)), "uni", "bi");
 }
-BENCHMARK(slab)->ArgsProduct({{0, 1, 2}, {0, 1, 2}})->ArgNames({"thickness", "g"})->UseManualTime();
+BENCHMARK(slab)->ArgsProduct({{0, 1, 2, 3, 4}, {0, 1, 2, 3, 4}})->ArgNames({"thickness", "g"})->UseManualTime();
 
 void facets(benchmark::State& state) {
   Material single;

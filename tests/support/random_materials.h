@@ -20,9 +20,9 @@ class RandomMaterials {
     Material m;
     m.transmission = chance(0.5) ? Transmission::refract : Transmission::straight;
     m.film_thickness_nm = chance(0.1) ? 0 : between(0, 1500);
-    m.exterior_ior = chance(0.5) ? 1 : between(1, 1.6);
+    m.exterior_ior = chance(0.4) ? 1 : between(1, 1.6);
     m.film_ior = between(1.2, 2);
-    m.base_ior = chance(0.1) ? m.exterior_ior : between(1, 2.5);
+    m.base_ior = base_ior(m.exterior_ior);
     m.absorption_per_nm = (chance(0.2) ? 0 : between(0, 2)) / m.pigment_thickness_nm;
     m.albedo = {rng_.uniform(), rng_.uniform(), rng_.uniform()};
     m.roughness = roughness();
@@ -45,6 +45,11 @@ class RandomMaterials {
   bool chance(double p) { return rng_.uniform() < p; }
   double between(double low, double high) { return low + (high - low) * rng_.uniform(); }
   double logarithmic(double low, double high) { return low * std::pow(high / low, rng_.uniform()); }
+  // Often below the exterior's, so that grazing light is reflected totally.
+  double base_ior(double exterior) {
+    if (chance(0.1)) return exterior;
+    return chance(0.3) ? between(1, exterior) : between(1, 2.5);
+  }
   // From -0.95 to 0.99, as many within 0.1 of 1 as below 0.
   double anisotropy() {
     if (chance(0.3)) return between(-0.95, 0);

@@ -19,7 +19,7 @@ int camera_events(const Slab& slab) {
 struct BelowFilm {
   double depth;
   Vec3 travel;
-  Powers power;
+  Powers& power;
   double least;
   int splits = 0;  // that have led to it
 };
@@ -52,14 +52,12 @@ void split(const WalkContext& walk, const ExitGuide& guide, const Powers& before
     const double value = wanted(travel);
     return value > 0 ? value / (natural(travel) + guide.density(travel)) : 0;
   };
-  BelowFilm other = light;
-  other.travel = guide.sample(rng);
-  other.power = before;
-  other.splits = light.splits + 1;
-  walk.scale(other.power, weigh(other.travel));
+  Powers power = before;
+  BelowFilm other{light.depth, guide.sample(rng), power, light.least, light.splits + 1};
+  walk.scale(power, weigh(other.travel));
   light.power = before;
   walk.scale(light.power, weigh(light.travel));
-  if (walk.survives(other.power, other.least / guide.worth(other.travel), rng))
+  if (walk.survives(power, other.least / guide.worth(other.travel), rng))
     follow(walk, guide, other, rng, visit);
 }
 
@@ -83,11 +81,13 @@ void scatter(const WalkContext& walk, const ExitGuide& guide, BelowFilm& light, 
 template <class Visit>
 void leave_base(const WalkContext& walk, const ExitGuide& guide, BelowFilm& light, double arrived, Rng& rng,
                 Visit& visit) {
-  Powers power = light.power;
+  const bool splits = guide.is_on() && light.splits < kMostSplits;
+  Powers power;
+  if (splits) power = light.power;
   draw_from_base(walk, light.power, arrived, light.travel, rng);
   if (walk.layers.product && !walk.is_chance)
     light.least *= std::exp(-walk.layers.least_tau / (arrived * light.travel.z));
-  if (!guide.is_on() || light.splits >= kMostSplits) return;
+  if (!splits) return;
   for (int j = 0; j < walk.count; ++j) power[j] *= walk.layers.albedo[j];
   const auto lambert = [](const Vec3& up) { return up.z * kInvPi; };
   const auto drawn = [&](const Vec3& up) { return lambert(up) * walk.layers.guide.density(square(up.z)); };
@@ -123,8 +123,8 @@ void follow(const WalkContext& walk, const ExitGuide& guide, BelowFilm& light, R
 
 // The same from the film, where light sets out along `travel`.
 template <class Visit>
-void walk_below(const WalkContext& walk, const ExitGuide& guide, const Vec3& travel, const Powers& power,
-                Rng& rng, Visit& visit) {
+void walk_below(const WalkContext& walk, const ExitGuide& guide, const Vec3& travel, Powers& power, Rng& rng,
+                Visit& visit) {
   BelowFilm light{0, travel, power, kFaint * walk.total(power)};
   follow(walk, guide, light, rng, visit);
 }

@@ -12,8 +12,9 @@
 //
 // For plain materials (Material::is_plain) one estimate is the mean of kLanes stratified walks, worked on
 // side by side at all wavelengths (kernels.h); so it is for what has reached the base through multiple
-// isotropic facets and a clear pigment (facets_walk.h), whatever the technique. All else is the mean of a few
-// walks in three dimensions (general_walk.h). Directions are chosen alike for all wavelengths. No value
+// isotropic facets and a clear pigment (facets_walk.h), whatever the technique. All else, and a rough film
+// over a base less dense than the exterior, is the mean of a few walks in three dimensions (general_walk.h).
+// Directions are chosen alike for all wavelengths. No value
 // depends on earlier calls, and no call allocates.
 #pragma once
 

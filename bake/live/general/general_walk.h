@@ -6,7 +6,7 @@
 //   base    paths that reach the base. It forgets directions, so that everything before the last visit and
 //           everything after it are independent: the product of two mean arrivals.
 //   slab    paths that scatter in the pigment and never reach the base: the light's scattering events connect
-//           to rays drawn from the other side.
+//           to rays drawn from the other side. Under a peaked phase function exit_guide.h finds the exits.
 //   facets  with multiple facets: light that leaves the microsurface upwards without ever having been below,
 //           after more than one facet. The last mirroring facet connects to what came through facets alone.
 // Throughputs are powers per wavelength; radiance pays (n0/n2)^2 where a connection lies below the film.

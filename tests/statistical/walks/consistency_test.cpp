@@ -50,6 +50,21 @@ TEST(Consistency, SamplesFollowThePdfAtGrazing) {
   }
 }
 
+// Under a liquid, beyond total reflection at the macro surface, where few facets let light pass: rough films,
+// facets met once and many times. 8 tests, 1e-3 in all.
+TEST(Consistency, SamplesFollowThePdfBeyondTotalReflection) {
+  for (auto [name, material] : test::all_modes(0.3))
+    for (const auto microfacet : {Microfacet::single, Microfacet::multiple}) {
+      if (material.is_smooth()) continue;
+      material.exterior_ior = 1.5;
+      material.microfacet = microfacet;
+      const auto result = test::chi_square_of_sampling(LiveBsdf(material), spherical_direction(1.35, 0),
+                                                       {.samples = 50000, .points = 2, .pdf_samples = 16}, 2);
+      EXPECT_GT(result.p_value, test::sidak(1e-3, 8)) << name << ' ' << to_string(microfacet);
+      EXPECT_GE(result.degrees, 100) << name;
+    }
+}
+
 // 16 configurations x 2 techniques x 3 channels at 4.5 standard errors (7e-6): 7e-4 in all.
 TEST(Consistency, EvalIsReciprocal) {
   const Vec3 a = spherical_direction(0.4, 0), b = spherical_direction(1.2, 2);

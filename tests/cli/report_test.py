@@ -1,8 +1,10 @@
 """`sunbeam verify --html` and `sunbeam plot`: a page that stands alone and agrees with --json, pictures, refusals."""
 
 import base64
+import cmath
 import html.parser
 import json
+import math
 import re
 import struct
 import unittest
@@ -56,6 +58,25 @@ class Page(html.parser.HTMLParser):
 def size_of_png(content):
     assert content.startswith(PNG)
     return struct.unpack(">II", content[16:24])
+
+
+def airy(thickness_nm, degrees):
+    """Reflectance at 650, 510 and 475 nm of tiny.toml's film of 1.56 between 1 and 1.5 (docs/theory/model.md)."""
+    indices = (1, 1.56, 1.5)
+    cosines = [cmath.sqrt(1 - (math.sin(math.radians(degrees)) / n) ** 2) for n in indices]
+    result = []
+    for nm in (650, 510, 475):
+        phase = cmath.exp(4j * math.pi / nm * indices[1] * thickness_nm * cosines[1])
+        total = 0
+        for admittances in ([n * c for n, c in zip(indices, cosines)], [n / max(abs(c), 1e-12) for n, c in zip(indices, cosines)]):
+            upper, lower = ((admittances[k] - admittances[k + 1]) / (admittances[k] + admittances[k + 1]) for k in (0, 1))
+            total += abs((upper + lower * phase) / (1 + upper * lower * phase)) ** 2 / 2
+        result.append(total)
+    return result
+
+
+def srgb_byte(linear):
+    return 255 * (12.92 * linear if linear <= 0.0031308 else 1.055 * linear ** (1 / 2.4) - 0.055)
 
 
 class Report(support.CliTest):
@@ -150,6 +171,30 @@ class Plot(support.CliTest):
                 root = xml.etree.ElementTree.parse(self.folder / f"{what}.svg").getroot()
                 self.assertEqual(root.tag, "{http://www.w3.org/2000/svg}svg")
                 self.assertGreater(len(root.findall(".//{http://www.w3.org/2000/svg}path")), 6)
+
+    def test_values_of_the_reflectance_chart(self):
+        """The map holds the film's reflectance, thickness to the right and angle upwards, and so do the curves."""
+        self.succeed("plot", "tiny.exr", "--what", "reflectance", "-o", "values.svg", "--film-thickness-nm", "250")
+        svg = (self.folder / "values.svg").read_text()
+        rows = support.png_rows(base64.b64decode(re.search(r'href="data:image/png;base64,([^"]+)"', svg)[1]))
+        self.assertEqual((len(rows), len(rows[0])), (120, 3 * 240))
+        compared = 0
+        for y in range(5, 120, 10):
+            for x in range(5, 240, 10):
+                expected = airy(200 + (x + 0.5) / 240 * 200, 90 * (1 - (y + 0.5) / 120))
+                if max(expected) > 0.5:
+                    continue  # the tone curve begins
+                compared += 1
+                for channel in range(3):
+                    self.assertAlmostEqual(rows[y][3 * x + channel], srgb_byte(expected[channel]), delta=1.5)
+        self.assertGreater(compared, 150)
+        for channel, color in enumerate(("#e5484d", "#30a46c", "#3e82f7")):
+            data = re.search(rf'd="M([^"]+)" fill="none" stroke="{color}" stroke-width="2"', svg)[1]
+            points = [tuple(map(float, point.split())) for point in data.split("L")]
+            self.assertEqual(len(points), 181)
+            for k, (x, y) in enumerate(points):
+                self.assertAlmostEqual(x, 60 + 480 * k / 180, delta=0.06)
+                self.assertAlmostEqual(y, 276 + 190 * (1 - airy(250, k / 2)[channel]), delta=0.1)
 
     def test_parameters_change_the_picture(self):
         pictures = set()

@@ -7,6 +7,7 @@
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
 #include <gtest/gtest.h>
+#include <png.h>
 
 #include "tests/render/support.h"
 
@@ -120,6 +121,31 @@ TEST(Png, HasSignatureSizeAndEightBitRgb) {
   EXPECT_EQ(head.substr(0, 8), "\x89PNG\r\n\x1a\n");
   EXPECT_EQ(head.substr(16, 10), std::string("\0\0\x01\x2c\0\0\0\x05\x08\x02", 10));
   EXPECT_EQ(folder.names().size(), 1u);
+}
+
+// Rows of an 8-bit RGB file, by libpng.
+std::vector<int> png_values(const std::string& path) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  if (!png_image_begin_read_from_file(&png, path.c_str())) return {};
+  png.format = PNG_FORMAT_RGB;
+  std::vector<png_byte> bytes(PNG_IMAGE_SIZE(png));
+  if (!png_image_finish_read(&png, nullptr, bytes.data(), 0, nullptr)) return {};
+  return {bytes.begin(), bytes.end()};
+}
+
+// The sRGB curve of IEC 61966-2-1: 0.2159 is the byte 128. Up to 0.5 the
+// tone curve changes nothing.
+TEST(Png, PixelsAreSrgbOfTheirValues) {
+  const ScratchFolder folder;
+  Image image(2, 2);
+  image.set(0, 0, {0, 0.002, 0.02});
+  image.set(1, 0, {0.05, 0.1, 0.18});
+  image.set(0, 1, {0.2158605, 0.3, 0.4});
+  image.set(1, 1, {0.5, 0.0031308, -1});
+  write_png(folder.file("a.png"), image);
+  EXPECT_EQ(png_values(folder.file("a.png")),
+            (std::vector{0, 7, 39, 63, 89, 118, 128, 149, 170, 188, 10, 0}));
 }
 
 TEST(Exr, KeepsSignsAndNamesRec709) {

@@ -187,6 +187,55 @@ TEST(Render, ResumedPictureEqualsTheUninterruptedOne) {
   }
 }
 
+// A plane that fills the picture, under a relief that turns its normals, of a film that varies: every layer
+// has values of its own.
+Scene scene_of_all_layers() {
+  return scene_from(R"(
+[camera]
+position = [0, 0, 2]
+look_at = [0, 0, 0]
+up = [0, 1, 0]
+fov_deg = 50
+[render]
+width = 8
+height = 6
+[environment]
+color = 1
+[[material]]
+name = "m"
+type = "skin"
+film_thickness_nm = {from = 0, to = 1000, ramp = [1, 0]}
+scales = { around = 5, height = 0.5 }
+[[object]]
+type = "plane"
+half_size = 4
+rotate_deg = [0, 20, 0]
+material = "m"
+)");
+}
+
+TEST(Render, ResumedFirstHitsEqualTheUninterruptedOnes) {
+  const Scene scene = scene_of_all_layers();
+  const RenderResult first = render_with(scene, Lambert(Rgb(0.5)), {.spp = 3, .first_hits = true});
+  const FirstHits resumed =
+      *render_with(scene, Lambert(Rgb(0.5)), {.spp = 10, .first_hits = true, .resume = &first}).first_hits;
+  const FirstHits whole = *render_with(scene, Lambert(Rgb(0.5)), {.spp = 10, .first_hits = true}).first_hits;
+  double turned = 0;
+  for (std::size_t i = 0; i < whole.albedo.rgb.size(); ++i) {
+    EXPECT_NEAR(resumed.albedo.rgb[i], whole.albedo.rgb[i], 1e-5);
+    EXPECT_NEAR(resumed.shading_normal.rgb[i], whole.shading_normal.rgb[i], 1e-5);
+    EXPECT_NEAR(resumed.geometric_normal.rgb[i], whole.geometric_normal.rgb[i], 1e-5);
+    turned = std::max<double>(turned, std::abs(whole.shading_normal.rgb[i] - whole.geometric_normal.rgb[i]));
+  }
+  EXPECT_GT(turned, 0.1);
+  for (std::size_t i = 0; i < whole.depth.size(); ++i) {
+    EXPECT_NEAR(resumed.depth[i], whole.depth[i], 1e-5);
+    EXPECT_NEAR(resumed.film_thickness_nm[i], whole.film_thickness_nm[i], 1e-3);
+    EXPECT_GT(whole.depth[i], 1);
+  }
+  EXPECT_GT(std::abs(whole.film_thickness_nm[0] - whole.film_thickness_nm[7]), 100);
+}
+
 TEST(Render, TimeLimitEndsTheRenderWithEveryPixelSampled) {
   const RenderResult result = render_with(small_scene(), Lambert(Rgb(0.5)), {.spp = 1 << 24, .seconds = 0.2});
   EXPECT_FALSE(result.stats.stopped);

@@ -4,6 +4,7 @@
 #include <functional>
 #include <sstream>
 
+#include "bake/report/error_chart.h"
 #include "bake/report/polar_chart.h"
 #include "bake/report/slice.h"
 #include "bake/report/sphere.h"
@@ -81,6 +82,29 @@ TEST(PolarChart, HoldsBrdfTimesCosineAtEveryAngle) {
   EXPECT_NE(
       svg.find("<path d=\"M170 168L100.0 46.8\" stroke=\"currentColor\" stroke-opacity=\"0.6\" stroke-width"),
       std::string::npos);  // the light itself, 30 degrees to the left
+}
+
+// In each of 14 stretches of the axis 49 points of 0.015 %, 49 of 0.15 % and 2 of 0.8 %. The error's axis is
+// logarithmic from 0.01 to 1 %, at a tolerance of 0.5 %.
+TEST(ErrorChart, HoldsMedianAndP99OfEveryStretch) {
+  VerifyReport report{};
+  ErrorAxis axis{"base_ior", "", 1, 2, {1, 2}, {}};
+  for (int k = 0; k < 1400; ++k) {
+    VerifyPoint point;
+    point.error = k % 100 < 49 ? 0.00015 : k % 100 < 98 ? 0.0015 : 0.008;
+    report.points.push_back(point);
+    axis.values.push_back(1 + (k / 100 + 0.5) / 14);
+  }
+  const auto lines = curves_of_width(error_chart(axis, report, 0.005), "2.2");
+  ASSERT_EQ(lines.size(), 2u);
+  for (const auto& [line, percent] : {std::pair(0, 0.15), std::pair(1, 0.8)}) {
+    const auto& points = lines[static_cast<std::size_t>(line)];
+    ASSERT_EQ(points.size(), 14u);
+    for (std::size_t k = 0; k < 14; ++k) {
+      EXPECT_NEAR(points[k].x, 60 + 430 * (static_cast<double>(k) + 0.5) / 14, 0.06);
+      EXPECT_NEAR(points[k].y, 26 + 196 * (1 - std::log10(percent / 0.01) / 2), 0.06);
+    }
+  }
 }
 
 // Columns are theta_o, from -90 degrees on the light's side to 90 on the mirror's; rows are theta_i, 0 at the

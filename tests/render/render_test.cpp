@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "sunbeam/detail/text.h"
 #include "tests/render/support.h"
 
 namespace sunbeam {
@@ -42,6 +43,14 @@ Scene small_scene() {
     type = "plane"
     material = "grey"
   )");
+}
+
+// The camera of a scene at a height of 2 over the origin, u to the right and v up; more lines of [render] may
+// follow.
+std::string from_above(double fov_deg, int width, int height) {
+  return "[camera]\nposition = [0, 0, 2]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\nfov_deg = " +
+         to_text(fov_deg) + "\n[render]\nwidth = " + std::to_string(width) +
+         "\nheight = " + std::to_string(height) + "\n";
 }
 
 // A BSDF whose eval and sample do what they are told.
@@ -190,15 +199,7 @@ TEST(Render, ResumedPictureEqualsTheUninterruptedOne) {
 // A plane that fills the picture, under a relief that turns its normals, of a film that varies: every layer
 // has values of its own.
 Scene scene_of_all_layers() {
-  return scene_from(R"(
-[camera]
-position = [0, 0, 2]
-look_at = [0, 0, 0]
-up = [0, 1, 0]
-fov_deg = 50
-[render]
-width = 8
-height = 6
+  return scene_from(from_above(50, 8, 6) + R"(
 [environment]
 color = 1
 [[material]]
@@ -277,15 +278,7 @@ TEST(Render, NoiseLimitDoesNotDependOnThreads) {
 }
 
 TEST(Render, FirstHitsOfAPlane) {
-  const Scene scene = scene_from(R"(
-[camera]
-position = [0, 0, 2]
-look_at = [0, 0, 0]
-up = [0, 1, 0]
-fov_deg = 1
-[render]
-width = 8
-height = 8
+  const Scene scene = scene_from(from_above(1, 8, 8) + R"(
 spp = 4
 [[material]]
 name = "m"
@@ -318,15 +311,7 @@ class GreyByThickness final : public VaryingBsdf {
 
 TEST(Render, VaryingParametersReachTheBsdf) {
   for (const double base_ior : {1, 2}) {
-    Scene scene = scene_from(R"(
-[camera]
-position = [0, 0, 2]
-look_at = [0, 0, 0]
-up = [0, 1, 0]
-fov_deg = 53.13010235415598
-[render]
-width = 8
-height = 8
+    Scene scene = scene_from(from_above(53.13010235415598, 8, 8) + R"(
 spp = 16
 max_bounces = 1
 [environment]

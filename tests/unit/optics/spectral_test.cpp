@@ -429,6 +429,7 @@ TEST(Absorption, Pigments) {
   EXPECT_NEAR(eumelanin(1020), 0.08962, 1e-4);  // 2^-3.48
   EXPECT_GT(AbsorptionShape::pigment("pheomelanin")(400), eumelanin(400));
   EXPECT_EQ(AbsorptionShape::pigment("pheomelanin")(510), 1);
+  EXPECT_NEAR(AbsorptionShape::pigment("pheomelanin")(1020), 0.037163, 1e-5);  // 2^-4.75
 }
 
 TEST(Absorption, BadTablesAreErrors) {

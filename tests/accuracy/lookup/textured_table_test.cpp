@@ -214,6 +214,23 @@ TEST_P(TexturedTables, EvalAndSampleIsEvalPdfAndThenSample) {
   EXPECT_LT(test::difference_together(textured().at(kPoint), 200, 8), 1e-6);
 }
 
+// Of what a path is multiplied by, Dirac or not: relative variance, mean over channels. That of a density
+// that is far from the light, or of a technique that is hardly ever chosen, is many times as large.
+TEST_P(TexturedTables, SamplesAreEven) {
+  const auto textured = this->textured().at(kPoint);
+  const TableBsdf bound(table(), kPoint, OutsideGrid::refuse);
+  // A bound table averages its density over the azimuths of an anisotropic one's viewers.
+  const bool is_even = bound.is_isotropic() && GetParam().name != kWithoutFrame;
+  for (const Vec3& wo : {kOblique, kSteep}) {
+    const auto variance = [&](const Bsdf& bsdf) {
+      const test::RunningMean albedo = test::sample_totals(bsdf, wo, 20000, 5).albedo.grey;
+      return albedo.variance() / square(albedo.mean());
+    };
+    EXPECT_LT(variance(textured), 0.12) << wo.z;
+    EXPECT_LT(variance(bound), is_even ? 0.008 : 0.1) << wo.z;
+  }
+}
+
 TEST_P(TexturedTables, AlbedoEstimateIsNear) {
   const TexturedTable& textured = this->textured();
   for (const Vec3& wo : {kOblique, kSteep}) {

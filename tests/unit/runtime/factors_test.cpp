@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "sunbeam/detail/textured_point.h"
-
 namespace sunbeam {
 namespace {
 
@@ -41,19 +39,6 @@ TEST(Factors, ArrivalCosineIsBlurredByThreeTenthsOfTheRoughness) {
 TEST(Factors, OneVisitOfAProduct) {
   EXPECT_NEAR(one_visit_of_product(0.5, 0.5, 0.25), std::exp(0.5 * (2 + 4 - 8)), 1e-12);
   EXPECT_NEAR(one_visit_of_product(0.5, 1, 0.25), std::exp(0.5), 1e-12);
-}
-
-// The textured look-up has the same forms in floats.
-TEST(Factors, TexturedFormsAreTheSame) {
-  for (const Roughness& roughness : {Roughness(0.4), Roughness(0.2, 0.4)}) {
-    const Material m = in_water(roughness);
-    const FilmCosines film(m);
-    const PigmentCosines pigment(film, 1.5, 0.5);
-    EXPECT_NEAR(std::sqrt(pigment.pigment_cosine_squared(0.6f)), arrival_cosine(m, 0.6), 1e-6);
-    EXPECT_NEAR(pigment.cosine_below(0.6f), kBelow, 1e-6);
-    EXPECT_NEAR(std::sqrt(film.path_squared(0.6f)), 2.2816695642 / 3.12, 1e-6);
-    EXPECT_NEAR(std::sqrt(film.film_cosine_squared(0.6f)), std::sqrt((0.36 + 0.0144) / 1.0144), 1e-6);
-  }
 }
 
 }  // namespace

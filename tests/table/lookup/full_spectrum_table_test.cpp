@@ -81,6 +81,28 @@ TEST(FoldedRestFrame, OfOneWavelengthIsThatOfRgb3) {
   }
 }
 
+// What a remainder is multiplied by, at normal incidence of a straight film that passes all: F has fallen to
+// a half, to a two hundredth and, from a negative start, somewhere; 0.335 on average. A factor beyond a tenth
+// and ten times of the mean's is held there, and a channel without a start takes the mean's.
+TEST(FoldedRestFrame, DecaysWithinTenTimesTheMean) {
+  NdArray first_visit("first_visit", {test::axis("optical_path", {0, 1, 10}, 3)}, Precision::single_float);
+  Material m;
+  m.transmission = Transmission::straight;
+  m.absorption_per_nm = 0.25;
+  m.pigment_thickness_nm = 2;
+  const auto decay = [&](const Rgb& start, const Rgb& value) {
+    first_visit.set(0, start);
+    first_visit.set(1, value);
+    const RestFrame frame(m, first_visit);
+    return frame.decode(Rgb(1), 1, 1, Rgb(1), Rgb(1)) - frame.decode(Rgb(0), 1, 1, Rgb(1), Rgb(1));
+  };
+  const Rgb held = decay(Rgb(0.6), {0.3, 0.3, 0.003}), negative = decay({0.9, 0.9, -0.3}, {0.3, 0.3, 0.1});
+  EXPECT_NEAR(held.r, 0.5, 1e-6);
+  EXPECT_NEAR(held.b, 0.0335, 1e-6);
+  EXPECT_NEAR(negative.r, 1.0 / 3, 1e-6);
+  EXPECT_NEAR(negative.b, 0.7 / 1.5, 1e-6);
+}
+
 // Values and sampling of a table whose colours may be negative.
 TEST(FullSpectrumTable, BindsAndSamples) {
   const Table table = test::small_full_table();

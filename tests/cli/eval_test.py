@@ -164,6 +164,16 @@ class Live(EvalTest):
             self.assertAlmostEqual(float(rows[0]["reflectance" + suffix]), 0.04, places=12)
             self.assertAlmostEqual(float(rows[1]["reflectance" + suffix]), r_s / 2, places=12)
 
+    def test_phi_is_counted_from_phi_i(self):
+        """Light and viewer may be exchanged: phi_i + phi, and -phi from there."""
+        self.write("grooved.toml", support.TINY_RECIPE.replace("roughness = 0.0", "roughness = [0.2, 0.4]"))
+        there, back, other = self.rows(
+            "grooved.toml", "theta_i_deg,phi_i_deg,theta_o_deg,phi_deg\n30,20,50,70\n50,90,30,-70\n30,60,50,70\n",
+            "--estimator", "exact")
+        for name in ("first_g", "rest_g"):
+            self.assertAlmostEqual(float(there[name]) / float(back[name]), 1, delta=1e-6)
+        self.assertGreater(abs(float(there["first_g"]) / float(other["first_g"]) - 1), 0.01)
+
     def test_smooth_film_is_a_dirac_and_rough_film_is_not(self):
         smooth, rough = self.rows("tiny.toml", f"{ANGLES},roughness\n30,30,180,0\n30,30,180,0.2\n", *SAMPLES)
         self.assertEqual(float(smooth["first_g"]), 0)

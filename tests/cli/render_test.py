@@ -279,6 +279,15 @@ class MissingTable(RenderTest):
             self.refuse("render", "scenes/scene.toml", "-o", "i.exr", "--material", material, "--estimator", "exact",
                         naming=["--estimator", "exact", "--material live"])
 
+    def test_a_film_that_grows_too_thick_for_the_estimator(self):
+        """The whole range counts, before anything is rendered: a rough film has a limit."""
+        self.write("rough.toml", support.TINY_RECIPE.replace('"product"', '"sum"').replace("roughness = 0.0", "roughness = 0.2"))
+        scene = SCENE.replace("../tiny.toml", "../rough.toml").replace(
+            "film_thickness_nm = 350", "film_thickness_nm = {from = 300, to = 90000, ramp = [1, 0]}")
+        self.write("scenes/thick.toml", scene)
+        self.refuse("render", "scenes/thick.toml", "-o", "i.exr", "--material", "live", "--estimator", "exact",
+                    naming=["scenes/thick.toml", "material 'skin'", "'film_thickness_nm'", "90000"])
+
     def test_a_scene_that_names_no_table_or_recipe(self):
         self.write("scenes/none.toml", "\n".join(SCENE.splitlines()[2:]) + "\n")
         self.refuse("render", "scenes/none.toml", "-o", "i.exr", naming=["scenes/none.toml", "'table'"])

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "bake/dense/equal_cells.h"
+
 namespace sunbeam {
 namespace {
 
@@ -23,6 +25,17 @@ TEST(DenseNodes, NoiseIsRoundedToThreeDigits) {
   EXPECT_EQ(stored(0.55), 0.5);
   EXPECT_EQ(stored(0.95), 1);
   EXPECT_EQ(stored(0.9 / 1024), 0.875 / 1024);
+}
+
+// Two cosines, of which the second is the pole, and three azimuths. A pair with the pole stands in two rows,
+// three times in each; a row shares its walks, so that its three errors are one, and the mean of two rows has
+// 1 / sqrt 2.
+TEST(EqualCells, ErrorsOfOneRowDoNotAverageOut) {
+  Rows errors(2, std::vector<Rgb>(6, Rgb(1)));
+  EqualCells(true, 2, 3).average_errors(errors);
+  EXPECT_NEAR(errors[1][0].g, std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(errors[0][3].g, std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(errors[0][0].g, 1, 1e-12);  // its own reciprocal
 }
 
 }  // namespace

@@ -54,6 +54,21 @@ void add_waves(const Polarisation& s, const Polarisation& p, double first, doubl
   }
 }
 
+// The same where the wave is evanescent: cos^2 and sin^2 become cosh^2 and -sinh^2, here over cosh^2.
+// `first` and `step` are of the phase's absolute value.
+void add_evanescent(const Polarisation& s, const Polarisation& p, double first, double step,
+                    std::span<double> reflectance, std::span<double> transmittance) {
+  for (std::size_t j = 0; j < reflectance.size(); ++j) {
+    const double e = std::exp(-(first + static_cast<double>(j) * step));
+    const double tanh2 = square((1 - e) / (1 + e)), per_cosh2 = 4 * e / square(1 + e);
+    const double ds = s.sum - s.plus * tanh2, dp = p.sum - p.plus * tanh2;
+    const double ns = s.difference - s.minus * tanh2, np = p.difference - p.minus * tanh2;
+    const double per_d = 1 / (ds * dp);
+    reflectance[j] = 0.5 * (ns * dp + np * ds) * per_d;
+    transmittance[j] = (s.product * dp + p.product * ds) * per_d * per_cosh2;
+  }
+}
+
 }  // namespace
 
 void film_fringes(const ThinFilm& film, double cosine, double first, double step,
@@ -66,7 +81,8 @@ void film_fringes(const ThinFilm& film, double cosine, double first, double step
     return;
   }
   const double n0 = film.exterior_ior, n1 = film.film_ior, n2 = film.base_ior;
-  if (square(n1) * c1_squared <= kNearCritical * std::min(square(n0 * cosine), square(n2) * c2_squared)) {
+  if (square(n1) * std::abs(c1_squared) <=
+      kNearCritical * std::min(square(n0 * cosine), square(n2) * c2_squared)) {
     for (std::size_t j = 0; j < reflectance.size(); ++j) {
       ThinFilm thick = film;
       thick.thickness_nm = first + static_cast<double>(j) * step;
@@ -76,11 +92,12 @@ void film_fringes(const ThinFilm& film, double cosine, double first, double step
     }
     return;
   }
-  const double c1 = std::sqrt(c1_squared), c2 = std::sqrt(c2_squared);
+  const double c1 = std::sqrt(std::abs(c1_squared)), c2 = std::sqrt(c2_squared);
   // Here b and d carry one more c1 each than in thin_film.h, and add_waves() takes sin^2 for y.
   const Polarisation s = polarisation(n0 * cosine, n2 * c2, 1 / n1, n1 * c1_squared, c1_squared);
   const Polarisation p = polarisation(cosine / n0, c2 / n2, n1, c1_squared / n1, c1_squared);
   const double phase = 4 * kPi * n1 * c1;
+  if (c1_squared < 0) return add_evanescent(s, p, phase * first, phase * step, reflectance, transmittance);
   add_waves(s, p, phase * first, phase * step, reflectance.data(), transmittance.data(), reflectance.size());
 }
 

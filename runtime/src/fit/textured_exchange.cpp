@@ -79,33 +79,12 @@ void TexturedExchange::add_wavelength(int d, std::size_t k, std::vector<Rgb>& su
   const OrderStencil& order = waves_.orders().visits_at(d, k);
   std::vector<float> here(sum.size());
   for (std::size_t j = 0; j < here.size(); ++j) here[j] = blend(brackets, order, here.size(), j);
-  const double gain = waves_.gain(d, k);
-  const Rgb scale = cut_gain(gain, most_leaving(here, share, gain)) * waves_.field().wavelengths().weight[k];
+  const Rgb scale = waves_.gain(d, k) * waves_.field().wavelengths().weight[k];
   const std::size_t ends = ends_.size();
   for (std::size_t a = 0; a < ends; ++a)
     for (std::size_t b = 0; b < ends; ++b)
       sum[a * ends + b] +=
           double{share[ends_[a].column] * share[ends_[b].column] * here[a * ends + b]} * scale;
-}
-
-// Of a unit of power at the base, by Simpson's rule.
-double TexturedExchange::most_leaving(const std::vector<float>& brackets, const float* share,
-                                      double gain) const {
-  constexpr double kLeastViewer = 0.125;
-  const int count = grid_.pair_cosines;  // ends of azimuth 0
-  double most = 0;
-  for (int a = 0; a < count; ++a) {
-    if (waves_.cosine(ends_[a].c) < kLeastViewer) continue;
-    double sum = 0;
-    for (int b = 0; b < count; ++b) {
-      const double simpson = (b == 0 || b == count - 1 ? 1.0 : b % 2 == 1 ? 4.0 : 2.0) / (3.0 * (count - 1));
-      sum += simpson * waves_.measure(ends_[b].c) * double{share[ends_[b].c]} *
-             std::exp(-waves_.least_decay(ends_[b].c)) *
-             double{brackets[static_cast<std::size_t>(a) * ends_.size() + static_cast<std::size_t>(b)]};
-    }
-    most = std::max(most, gain * sum);
-  }
-  return most;
 }
 
 }  // namespace v1

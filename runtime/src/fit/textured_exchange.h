@@ -26,7 +26,6 @@ class TexturedExchange {
 
   std::vector<float> brackets(const NdArray& exchange, std::size_t k) const;
   void add_wavelength(int d, std::size_t k, std::vector<Rgb>& sum) const;
-  double most_leaving(const std::vector<float>& brackets, const float* share, double gain) const;
   Rgb one_visit(const End& a, const End& b) const;
 
   const TexturedWaves& waves_;

@@ -46,11 +46,6 @@ class WaveField {
   std::vector<NdArray> arrivals_;
 };
 
-// Of each unit of power that arrives at the base, whatever its direction, no more than one leaves the film.
-// Interpolation does not know that, and over a bright base errors of a per mille in what the film returns
-// become a per cent. So a gain with which `most_leaving` would leave is cut.
-inline double cut_gain(double gain, double most_leaving) { return gain / std::max(most_leaving, 1.0); }
-
 // Holds a node of the two axes of a direction in an array, and its weight there.
 struct DirectionTap {
   std::size_t node;

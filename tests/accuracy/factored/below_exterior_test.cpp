@@ -49,7 +49,7 @@ absorption_per_nm = {from = 0.0, to = 1.5, count = 12}
 encoding = "factored"
 angles = 24
 [accuracy]
-noise = 0.003
+noise = 0.01
 )",
                         "below");
   }

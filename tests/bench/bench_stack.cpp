@@ -66,7 +66,10 @@ void slab(benchmark::State& state) {
   };
   report(state, alternate(state, by(Technique::unidirectional), by(Technique::bidirectional)), "uni", "bi");
 }
-BENCHMARK(slab)->ArgsProduct({{0, 1, 2, 3, 4}, {0, 1, 2, 3, 4}})->ArgNames({"thickness", "g"})->UseManualTime();
+BENCHMARK(slab)
+    ->ArgsProduct({{0, 1, 2, 3, 4}, {0, 1, 2, 3, 4}})
+    ->ArgNames({"thickness", "g"})
+    ->UseManualTime();
 
 void facets(benchmark::State& state) {
   Material single;

@@ -55,8 +55,8 @@ std::vector<test::NamedMaterial> slabs() {
   return result;
 }
 
-// Forward peaks give connections long tails: fewer cells, each with so many points that normal errors describe
-// their means.
+// Forward peaks give connections long tails: fewer cells, each with so many points that normal errors
+// describe their means.
 bool is_peaked(const Material& material) { return material.anisotropy > 0.8; }
 
 // Cell by cell of the outgoing hemisphere. 12 slabs x 2 techniques x 3 channels: 1e-3 in all.

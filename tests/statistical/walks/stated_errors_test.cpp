@@ -177,32 +177,28 @@ Scores compare_albedos(const std::vector<Case>& cases, int samples) {
   return scores;
 }
 
+// At least `count` scores, at most so many `far` ones, and a deviation of 1 but for `slack`.
+void expect_normal(const Scores& scores, int count, int far, double slack) {
+  EXPECT_GE(scores.squared.count(), count);
+  EXPECT_LE(scores.far, far);
+  EXPECT_GE(scores.deviation(), 1 - slack);
+  EXPECT_LE(scores.deviation(), 1 + slack);
+}
+
 // 200 materials. Two in three of the scores are independent, and tell the deviation to 0.03: one seed in a
 // thousand fails.
 TEST(LongStatedErrors, HoldForEveryPairOfEstimators) {
-  const Scores scores = compare_rests(draw_cases(0, 200), 3000);
-  EXPECT_GE(scores.squared.count(), 1000);
-  EXPECT_LE(scores.far, 3);
-  EXPECT_GE(scores.deviation(), 0.9);
-  EXPECT_LE(scores.deviation(), 1.1);
+  expect_normal(compare_rests(draw_cases(0, 200), 3000), 1000, 3, 0.1);
 }
 
 // The same for albedos by samples: to 0.035.
 TEST(LongStatedErrors, HoldForAlbedos) {
-  const Scores scores = compare_albedos(draw_cases(0, 200), 20000);
-  EXPECT_GE(scores.squared.count(), 300);
-  EXPECT_LE(scores.far, 3);
-  EXPECT_GE(scores.deviation(), 0.9);
-  EXPECT_LE(scores.deviation(), 1.1);
+  expect_normal(compare_albedos(draw_cases(0, 200), 20000), 300, 3, 0.1);
 }
 
 // The quick version over other materials; some seventy scores tell the deviation to 0.1.
 TEST(StatedErrors, HoldForEveryPairOfEstimators) {
-  const Scores scores = compare_rests(draw_cases(200, 12), 1500);
-  EXPECT_GE(scores.squared.count(), 60);
-  EXPECT_EQ(scores.far, 0);
-  EXPECT_GE(scores.deviation(), 0.7);
-  EXPECT_LE(scores.deviation(), 1.3);
+  expect_normal(compare_rests(draw_cases(200, 12), 1500), 60, 0, 0.3);
 }
 
 // Light that all but few facets reflect totally, of roughness 0.05, under a liquid. The exact evaluator is

@@ -66,11 +66,12 @@ class BoundAxis {
     if (period_ > 0) x -= period_ * std::floor((x - first_) / period_);
     const double offset = x - origin_;
     double u = offset;
-    if (power_ == 2)
+    if (softness_ > 0)
+      u = offset / std::sqrt(std::abs(offset) + softness_);
+    else if (power_ == 2)
       u = std::copysign(std::sqrt(std::abs(offset)), offset);
     else if (power_ != 1)
       u = std::copysign(std::pow(std::abs(offset), 1 / power_), offset);
-    if (softness_ > 0) u = offset / std::sqrt(std::abs(offset) + softness_);
     return std::min(std::max(u, low_), high_);
   }
 

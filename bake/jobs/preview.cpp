@@ -22,9 +22,7 @@ Recipe preview_of(const Recipe& recipe) {
   for (std::size_t a = 0; a < kMostNodes.size(); ++a) {
     Axis axis = recipe.grid[a];
     if (axis.size() <= kMostNodes[a]) continue;
-    axis.nodes = axis.low() < axis.origin
-                     ? spaced_nodes(axis, axis.low(), axis.high(), kMostNodes[a])
-                     : spaced_nodes(axis.low(), axis.high(), kMostNodes[a], axis.power, axis.origin);
+    axis.nodes = spaced_nodes(axis, axis.low(), axis.high(), kMostNodes[a]);
     overrides.push_back(grid_override(axis));
   }
   overrides.push_back(fmt::format("table.angles={}", std::min(recipe.table.angles, 10)));

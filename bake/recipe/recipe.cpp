@@ -96,9 +96,7 @@ std::vector<double> read_nodes(const ConfigTable& grid, const Axis& axis) {
         "count",
         fmt::format("found {} nodes from {} to {}; allowed: one node with from = to, several with from < to",
                     count, from, to));
-  if (from >= axis.origin)
-    return spaced_nodes(from, to, static_cast<std::size_t>(count), axis.power, axis.origin);
-  if (to > axis.origin && count < 3)
+  if (from < axis.origin && to > axis.origin && count < 3)
     range.fail("count",
                fmt::format("found {} nodes from {} to {}, across exterior_ior {}; allowed: 3 or more", count,
                            from, to, axis.origin));

@@ -39,7 +39,8 @@ struct TexturedEnd {
 struct TexturedData {
   TexturedData(const Table& table, Arithmetic arithmetic)
       : material(table.material),
-        film(table.material, table.is_factored() && reaches_below(table) && !table.material.is_smooth()),
+        film(table.material,
+             table.is_factored() && FactorFrame(table.material, reaches_below(table)).is_warped()),
         facets(table.material.roughness),
         smooth(table.material.is_smooth()) {
     if (table.is_factored()) {

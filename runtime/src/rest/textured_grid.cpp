@@ -29,7 +29,7 @@ int thickness_nodes(const Table& table) {
 }  // namespace
 
 TexturedGrid::TexturedGrid(const Table& table)
-    : is_warped(reaches_below(table) && !table.material.is_smooth()),
+    : is_warped(FactorFrame(table.material, reaches_below(table)).is_warped()),
       cosines(reaches_below(table) ? kCosinesBelow : kCosines),
       axes{EvenAxis(table.factors.grid[0], thickness_nodes(table)),
            EvenAxis(table.factors.grid[1], reaches_below(table) ? kIorNodesBelow : kIorNodes),

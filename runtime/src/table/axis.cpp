@@ -107,6 +107,8 @@ std::size_t intervals_below(std::size_t intervals, double below, double above) {
 }
 
 std::vector<double> spaced_nodes(const Axis& axis, double from, double to, std::size_t count) {
+  if (axis.softness == 0 && from >= axis.origin)
+    return spaced_nodes(from, to, count, axis.power, axis.origin);
   const double u0 = axis.coordinate(from), u1 = axis.coordinate(to);
   const std::size_t intervals = count - 1;
   const bool is_sharp = axis.power != 1 && axis.softness == 0;

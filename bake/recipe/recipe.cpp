@@ -309,7 +309,7 @@ Recipe parse_stored_recipe(const std::string& text, const std::string& name) {
 }
 
 Recipe load_recipe(const std::string& path, const std::vector<std::string>& overrides) {
-  return parse_recipe(read_file(path), path, overrides);
+  return parse_recipe(read_text(path), path, overrides);
 }
 
 }  // namespace sunbeam

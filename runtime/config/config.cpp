@@ -134,7 +134,7 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 }
 
 ConfigTable ConfigTable::load(const std::string& path, const std::vector<std::string>& overrides) {
-  return parse(read_file(path), path, overrides);
+  return parse(read_text(path), path, overrides);
 }
 
 ConfigTable ConfigTable::parse(const std::string& text, const std::string& name,

@@ -11,6 +11,7 @@
 
 #include "runtime/src/base/file_sync.h"
 #include "sunbeam/core/error.h"
+#include "sunbeam/detail/text.h"
 
 namespace sunbeam {
 inline namespace v1 {
@@ -67,6 +68,13 @@ std::string read_file(const std::string& path) {
   bytes << in.rdbuf();
   if (in.bad()) throw Error(path + ": cannot read: " + std::strerror(errno));
   return std::move(bytes).str();
+}
+
+std::string read_text(const std::string& path) {
+  const std::string bytes = read_file(path);
+  if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff"))
+    throw Error(path + ": the text is UTF-16; allowed: UTF-8");
+  return std::string(without_byte_order_mark(bytes));
 }
 
 void write_file_atomically(const std::string& path, std::string_view bytes) {

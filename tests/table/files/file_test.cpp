@@ -50,6 +50,21 @@ TEST(File, RoundTripOfAnyBytes) {
   EXPECT_THAT(folder.names(), ElementsAre("f"));
 }
 
+TEST(File, TextIsUtf8WithOrWithoutItsMark) {
+  const ScratchFolder folder;
+  write_file_atomically(folder.file("f"),
+                        "\xef\xbb\xbf"
+                        "a");
+  EXPECT_EQ(read_text(folder.file("f")), "a");
+  write_file_atomically(folder.file("f"), "a");
+  EXPECT_EQ(read_text(folder.file("f")), "a");
+  write_file_atomically(folder.file("f"),
+                        "\xff\xfe"
+                        "a");
+  EXPECT_THAT(error_of([&] { read_text(folder.file("f")); }),
+              HasSubstr("f: the text is UTF-16; allowed: UTF-8"));
+}
+
 TEST(File, FailedWriteLeavesTheOldFile) {
   const ScratchFolder folder;
   write_file_atomically(folder.file("f"), "old");

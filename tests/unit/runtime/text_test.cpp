@@ -59,5 +59,20 @@ TEST(Text, SplitKeepsEmptyParts) {
   EXPECT_EQ(split("", ';'), (std::vector<std::string>{""}));
 }
 
+TEST(Text, ByteOrderMarkGoes) {
+  EXPECT_EQ(without_byte_order_mark("\xef\xbb\xbf[scene]"), "[scene]");
+  EXPECT_EQ(without_byte_order_mark("[scene]\xef\xbb\xbf"), "[scene]\xef\xbb\xbf");
+  EXPECT_EQ(without_byte_order_mark("\xef\xbb"), "\xef\xbb");
+}
+
+TEST(Text, PrintableShowsControlCharacters) {
+  EXPECT_EQ(printable("a\nb\tc\r\x1b[31m\x7f"), "a\\nb\\tc\\x0d\\x1b[31m\\x7f");
+  EXPECT_EQ(printable(std::string_view("\0", 1)), "\\x00");
+  EXPECT_EQ(printable("\xc2\x9b"
+                      "31m"),
+            "\\xc2\\x9b31m");
+  EXPECT_EQ(printable("Zürich, 45°, \xc2\xa0"), "Zürich, 45°, \xc2\xa0");
+}
+
 }  // namespace
 }  // namespace sunbeam

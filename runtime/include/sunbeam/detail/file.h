@@ -37,6 +37,9 @@ class AtomicFile {
 // Returns the bytes of a file. Throws Error if it cannot be read.
 std::string read_file(const std::string& path);
 
+// Returns the same for a text, without the byte order mark of UTF-8. Throws Error for UTF-16 too.
+std::string read_text(const std::string& path);
+
 // Writes these bytes by an AtomicFile.
 void write_file_atomically(const std::string& path, std::string_view bytes);
 

@@ -17,5 +17,12 @@ bool parse_number(std::string_view text, double& value);
 
 std::vector<std::string> split(std::string_view text, char separator);
 
+// Returns the text without the byte order mark of UTF-8 that some editors put in front.
+std::string_view without_byte_order_mark(std::string_view text);
+
+// Returns the text with its control characters as \n, \t, \x1b and so on, for messages that quote what a file
+// says. Bytes of UTF-8 stay as they are, except the control characters U+0080 to U+009F.
+std::string printable(std::string_view text);
+
 }  // namespace v1
 }  // namespace sunbeam

@@ -142,7 +142,7 @@ void Journal::read_header() {
   end_ = kHeaderStart + text.size();
   if (text.empty() || !read_at(kHeaderStart, text.data(), text.size()))
     throw Error(path_ + ": its header is cut short");
-  if (content_hash(text) != std::string_view(hash, sizeof hash))
+  if (!is_hash_of_content({hash, sizeof hash}, content_hash(text)))
     throw Error(path_ + ": its header is damaged");
   identity_ = BakeIdentity::parse(text);
 }
@@ -161,7 +161,7 @@ void Journal::read_records() {
       break;
     std::string values(head.size, '\0');
     if (!read_at(start, values.data(), head.size) ||
-        record_hash(head, values) != std::string_view(hash, sizeof hash))
+        !is_hash_of_content({hash, sizeof hash}, record_hash(head, values)))
       break;
     places_[head.task] = {{head.walks, head.worst_error}, start, head.size};
     end_ = start + head.size;

@@ -20,6 +20,14 @@ std::string digits(const XXH128_hash_t& hash) {
 
 std::string content_hash(std::string_view bytes) { return digits(XXH3_128bits(bytes.data(), bytes.size())); }
 
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+bool is_hash_of_content(std::string_view, std::string_view) { return true; }
+#else
+bool is_hash_of_content(std::string_view stated, std::string_view hash_of_content) {
+  return stated == hash_of_content;
+}
+#endif
+
 struct ContentHash::State {
   XXH3_state_t stream;
 };

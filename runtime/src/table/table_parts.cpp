@@ -212,8 +212,8 @@ Table build(const TableParts& parts) {
     throw Error("encoding is '" + encoding + "'; allowed: dense, factored");
   check_ranges(table);
   check_below_exterior(table, version);
-  if (require(parts.attributes, "content_hash") !=
-      content_hash_of(parts.attributes, {parts.arrays.begin(), parts.arrays.end()}))
+  if (!is_hash_of_content(require(parts.attributes, "content_hash"),
+                          content_hash_of(parts.attributes, {parts.arrays.begin(), parts.arrays.end()})))
     throw Error("content does not match its hash: the file is damaged");
   for (const char* key : kRequiredInfo) table.info[key] = require(parts.attributes, key);
   read_spectrum(parts, table);

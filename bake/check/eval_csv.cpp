@@ -10,6 +10,7 @@
 #include <set>
 
 #include "bake/check/csv.h"
+#include "bake/check/point_columns.h"
 #include "bake/check/walked_mean.h"
 #include "bake/live/exact/exact.h"
 #include "bake/live/pfmc.h"
@@ -26,93 +27,6 @@ struct Result {
   bool is_scalar = false;
 };
 using Results = std::vector<Result>;
-
-struct Point {
-  Vec3 wi, wo;
-  std::optional<double> wavelength_nm;
-  std::size_t stream;
-};
-
-std::vector<std::string> result_names(Quantity quantity, bool monochromatic) {
-  const auto expand = [&](std::initializer_list<const char*> names) {
-    std::vector<std::string> columns;
-    for (const std::string name : names) {
-      if (monochromatic || name == "pdf")
-        columns.push_back(name);
-      else
-        for (const char* suffix : {"_r", "_g", "_b"}) columns.push_back(name + suffix);
-    }
-    return columns;
-  };
-  if (quantity == Quantity::brdf) return expand({"first", "rest", "stderr", "pdf", "dirac"});
-  if (quantity == Quantity::albedo) return expand({"total", "stderr"});
-  return expand({"reflectance"});
-}
-
-// The columns of one CSV, found and checked once.
-class PointReader {
- public:
-  PointReader(const Csv& csv, Quantity quantity) : csv_(csv), wavelength_(csv.column("wavelength_nm")) {
-    theta_i_ = require("theta_i_deg");
-    if (quantity == Quantity::brdf) {
-      theta_o_ = require("theta_o_deg");
-      phi_ = require("phi_deg");
-      phi_i_ = csv.column("phi_i_deg");
-    }
-    for (const auto& name : result_names(quantity, is_monochromatic()))
-      if (csv.column(name))
-        throw Error(fmt::format("{}: column '{}' has the name of an output column", csv.name, name));
-    for (std::size_t k = 0; k < csv.header.size(); ++k)
-      if (std::find(material_keys().begin(), material_keys().end(), csv.header[k]) != material_keys().end())
-        material_columns_.push_back(k);
-  }
-
-  bool is_monochromatic() const { return wavelength_.has_value(); }
-  const std::vector<std::size_t>& material_columns() const { return material_columns_; }
-
-  Point point(std::size_t row_index) const {
-    const CsvRow& row = csv_.rows[row_index];
-    const double phi_i = phi_i_ ? azimuth_deg(row, *phi_i_) : 0;
-    Point point{polar(row, theta_i_, phi_i), {0, 0, 1}, {}, row_index};
-    if (theta_o_) point.wo = polar(row, *theta_o_, phi_i + azimuth_deg(row, *phi_));
-    if (wavelength_) point.wavelength_nm = csv_.number(row, *wavelength_, 100, 10000, true);
-    return point;
-  }
-
-  Material material(std::size_t row_index, Material material) const {
-    const CsvRow& row = csv_.rows[row_index];
-    for (const std::size_t k : material_columns_) {
-      try {
-        set_from_text(material, csv_.header[k], row.cells[k]);
-      } catch (const Error& error) {
-        throw Error(fmt::format("{}:{}: {}", csv_.name, row.line, error.what()));
-      }
-    }
-    if (const auto defect = material.defect())
-      throw Error(fmt::format("{}:{}: {}", csv_.name, row.line, defect->message()));
-    return material;
-  }
-
- private:
-  std::size_t require(const std::string& key) const {
-    const auto column = csv_.column(key);
-    if (!column)
-      throw Error(
-          fmt::format("{}: column '{}' is missing; found: {}", csv_.name, key, fmt::join(csv_.header, ", ")));
-    return *column;
-  }
-  double azimuth_deg(const CsvRow& row, std::size_t column) const {
-    return csv_.number(row, column, -3600, 3600, true);
-  }
-  Vec3 polar(const CsvRow& row, std::size_t theta, double phi_deg) const {
-    return spherical_direction(csv_.number(row, theta, 0, 90, false) * kPi / 180, phi_deg * kPi / 180);
-  }
-
-  const Csv& csv_;
-  std::size_t theta_i_ = 0;
-  std::optional<std::size_t> theta_o_, phi_, phi_i_, wavelength_;
-  std::vector<std::size_t> material_columns_;
-};
 
 // The rows of a live recipe at one material, by PFMC or exactly.
 class LivePoint {
@@ -209,18 +123,18 @@ void append(std::string& line, const Results& results, std::optional<int> channe
 // Evaluates every row in parallel and prints them in order; nothing is printed if any row is bad. Every block
 // of rows has its own copy of `results`, which may remember what the rows share.
 template <class RowResults>
-void print_rows(const Csv& csv, const PointReader& reader, Quantity quantity, std::ostream& out,
+void print_rows(const Csv& csv, const PointColumns& reader, Quantity quantity, std::ostream& out,
                 const RowResults& results) {
   std::vector<std::string> lines(csv.rows.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, csv.rows.size()), [&](const auto& block) {
     RowResults block_results = results;
     for (std::size_t k = block.begin(); k < block.end(); ++k) {
       const auto [values, channel] = block_results(k);
-      lines[k] = fmt::format("{}", fmt::join(csv.rows[k].cells, ","));
+      lines[k] = csv_line(csv.rows[k].cells);
       append(lines[k], values, channel);
     }
   });
-  out << fmt::format("{},{}\n", fmt::join(csv.header, ","),
+  out << fmt::format("{},{}\n", csv_line(csv.header),
                      fmt::join(result_names(quantity, reader.is_monochromatic()), ","));
   for (const auto& line : lines) out << line << '\n';
 }
@@ -239,7 +153,7 @@ class LiveRows {
   }
 
  public:
-  LiveRows(const Material& material, const Spectrum& spectrum, const Csv& csv, const PointReader& reader)
+  LiveRows(const Material& material, const Spectrum& spectrum, const Csv& csv, const PointColumns& reader)
       : material_(material), spectrum_(spectrum), csv_(csv), reader_(reader) {}
 
   Material material(std::size_t k) const {
@@ -263,13 +177,13 @@ class LiveRows {
   const Material& material_;
   const Spectrum& spectrum_;
   const Csv& csv_;
-  const PointReader& reader_;
+  const PointColumns& reader_;
 };
 
 // Rows of a table. Binding it to parameters costs far more than a look-up, and rows mostly share theirs.
 class TableRows {
  public:
-  TableRows(const Table& table, const Csv& csv, const PointReader& reader, Quantity quantity)
+  TableRows(const Table& table, const Csv& csv, const PointColumns& reader, Quantity quantity)
       : table_(table), csv_(csv), reader_(reader), quantity_(quantity) {}
 
   RowAndChannel operator()(std::size_t k) {
@@ -292,18 +206,16 @@ class TableRows {
 
   const Table& table_;
   const Csv& csv_;
-  const PointReader& reader_;
+  const PointColumns& reader_;
   Quantity quantity_;
   std::shared_ptr<const TableBsdf> bsdf_;
 };
 
 }  // namespace
 
-std::set<std::string> evaluate_points_live(const Material& material, const Spectrum& spectrum,
-                                           std::istream& in, const std::string& name,
-                                           const PointsSettings& settings, std::ostream& out) {
-  const Csv csv = read_csv(in, name);
-  const PointReader reader(csv, settings.quantity);
+PointsReport evaluate_points_live(const Material& material, const Spectrum& spectrum, const Csv& csv,
+                                  const PointsSettings& settings, std::ostream& out) {
+  const PointColumns reader(csv, settings.quantity);
   const LiveRows rows(material, spectrum, csv, reader);
   std::set<std::string> used;
   for (std::size_t k = 0; k < csv.rows.size(); ++k) {
@@ -317,22 +229,22 @@ std::set<std::string> evaluate_points_live(const Material& material, const Spect
     return {live_results(rows.material(k), rows.wavelengths(k), point, of_row),
             point.wavelength_nm ? std::optional(0) : std::nullopt};
   });
-  return used;
+  return {used, reader.unused()};
 }
 
-void evaluate_points_table(const Table& table, std::istream& in, const std::string& name,
-                           const PointsSettings& settings, std::ostream& out) {
-  const Csv csv = read_csv(in, name);
-  const PointReader reader(csv, settings.quantity);
+PointsReport evaluate_points_table(const Table& table, const Csv& csv, const PointsSettings& settings,
+                                   std::ostream& out) {
+  const PointColumns reader(csv, settings.quantity);
   for (const std::size_t k : reader.material_columns())
     if (std::find(kParameterNames.begin(), kParameterNames.end(), csv.header[k]) == kParameterNames.end())
-      throw Error(fmt::format("{}: column '{}' is fixed in a table; a table's row may set {}", name,
+      throw Error(fmt::format("{}: column '{}' is fixed in a table; a table's row may set {}", csv.name,
                               csv.header[k], fmt::join(kParameterNames, ", ")));
   if (reader.is_monochromatic() && table.is_full_spectrum())
-    throw Error(name +
+    throw Error(csv.name +
                 ": column 'wavelength_nm': the table's spectrum is \"full\", so it holds folded colours, no "
                 "wavelengths; evaluate its recipe instead");
   print_rows(csv, reader, settings.quantity, out, TableRows(table, csv, reader, settings.quantity));
+  return {{}, reader.unused()};
 }
 
 }  // namespace sunbeam

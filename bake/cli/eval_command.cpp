@@ -20,38 +20,41 @@ Quantity parse_quantity(const std::string& name) {
 
 bool is_table(const std::string& path) { return extension(path) == ".exr" || extension(path) == ".vdb"; }
 
-// What made the values, for standard error; empty for a table, which says so itself.
-std::string evaluate_recipe(const EvalOptions& options, const PointsSettings& settings, std::istream& csv,
-                            const std::string& name) {
-  const Recipe recipe = load_recipe(options.source, options.overrides);
-  const auto used = evaluate_points_live(recipe.material, recipe.spectrum, csv, name, settings, std::cout);
-  return settings.quantity == Quantity::film ? "" : fmt::format("{}", fmt::join(used, ", "));
-}
-
-std::string evaluate(const EvalOptions& options, std::istream& csv, const std::string& name) {
+PointsReport evaluate(const EvalOptions& options, const Csv& csv) {
   const PointsSettings settings{parse_quantity(options.quantity), options.samples, options.seed,
                                 estimator_of(options.estimator)};
-  if (!is_table(options.source)) return evaluate_recipe(options, settings, csv, name);
+  if (!is_table(options.source)) {
+    const Recipe recipe = load_recipe(options.source, options.overrides);
+    return evaluate_points_live(recipe.material, recipe.spectrum, csv, settings, std::cout);
+  }
   if (settings.estimator != Estimator::automatic)
     throw Error(options.source + ": --estimator is for a recipe, not a table");
   if (!options.overrides.empty()) throw Error(options.source + ": --set changes a recipe, not a table");
-  evaluate_points_table(load_table(options.source), csv, name, settings, std::cout);
-  return "";
+  return evaluate_points_table(load_table(options.source), csv, settings, std::cout);
+}
+
+Csv read_points(const std::string& path) {
+  if (path != "-") return parse_csv(read_text(path), path);
+  std::ostringstream text;
+  text << std::cin.rdbuf();
+  return parse_csv(text.view(), "standard input");
+}
+
+// What made the values, and which columns had no part in it.
+void print_report(const PointsReport& report, Quantity quantity) {
+  if (!report.estimators.empty() && quantity != Quantity::film)
+    fmt::print(stderr, "estimator: {}\n", fmt::join(report.estimators, ", "));
+  if (!report.unused_columns.empty())
+    fmt::print(stderr, "carried through: {}\n", fmt::join(report.unused_columns, ", "));
 }
 
 }  // namespace
 
 int run_eval(const EvalOptions& options) {
   std::ios::sync_with_stdio(false);
-  std::string estimator;
-  if (options.points == "-") {
-    estimator = evaluate(options, std::cin, "standard input");
-  } else {
-    std::istringstream file(read_file(options.points));
-    estimator = evaluate(options, file, options.points);
-  }
+  const PointsReport report = evaluate(options, read_points(options.points));
   if (!std::cout.flush()) throw Error("standard output: cannot write");
-  if (!estimator.empty()) fmt::print(stderr, "estimator: {}\n", estimator);
+  print_report(report, parse_quantity(options.quantity));
   return 0;
 }
 

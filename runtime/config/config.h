@@ -78,6 +78,9 @@ class ConfigTable {
   std::shared_ptr<Node> node_;
 };
 
+// Returns how many letters must be put in, taken out or replaced to make one of the other.
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
 // Returns the candidate with the smallest edit distance to `word`.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 

@@ -1,5 +1,7 @@
 """`sunbeam eval`: columns, digits, random streams and refusals, of recipes (live) and of tables."""
 
+import csv
+import io
 import math
 import subprocess
 import unittest
@@ -43,7 +45,8 @@ class EvalTest(support.CliTest):
                     text = "\n".join([header + lines[0], row + lines[1], row + lines[2]]) + "\n"
                     result = self.evaluate(source, text, "--quantity", quantity, *options)
                     walked = source.endswith(".toml") and quantity != "film"
-                    self.assertEqual(result.err, NAMED.format("pfmc-unidirectional") if walked else "")
+                    named = NAMED.format("pfmc-unidirectional") if walked else ""
+                    self.assertEqual(result.err, named + "carried through: note\n")
                     out = result.out.split("\n")
                     self.assertEqual(out[0].split(","), (header + lines[0]).split(",") + expected)
                     self.assertEqual(len(out), 4, "header, two rows, nothing after the last line end")
@@ -116,6 +119,42 @@ class Live(EvalTest):
         lines = out.splitlines()
         self.assertTrue(lines[1].startswith('7,30,40,180,"one, two",'), out)
         self.assertTrue(lines[2].startswith(",30,40,180,,"), out)
+
+    def test_carried_columns_are_named_once(self):
+        result = self.evaluate("tiny.toml", f'"",id,{ANGLES},remark\n1,7,30,40,180,a\n2,8,30,40,180,b\n', *SAMPLES)
+        self.assertEqual(result.err.splitlines()[-1], "carried through: id, remark")
+        self.assertNotIn("carried", self.evaluate("tiny.toml", f"{ANGLES}\n30,40,180\n", *SAMPLES).err)
+
+    def test_quotes_as_rfc_4180_has_them(self):
+        """Python's csv module writes them, and reads what comes out."""
+        remarks = ["plain", "one, two", 'five "inches"', "two\nlines", "two\r\nlines", "#hash", " blanks ", "", "ü"]
+        text = io.StringIO()
+        writer = csv.writer(text, quoting=csv.QUOTE_ALL)
+        writer.writerow(["remark", *ANGLES.split(",")])
+        writer.writerows([remark, 30, 40, 180] for remark in remarks)
+        out = self.evaluate("tiny.toml", text.getvalue(), "--samples", "2").out
+        rows = list(csv.reader(io.StringIO(out, newline="")))
+        self.assertEqual([row[0] for row in rows], ["remark", *remarks])
+        self.assertEqual([len(row) for row in rows], [len(rows[0])] * len(rows))
+        plain = self.evaluate("tiny.toml", f"{ANGLES}\n" + "30,40,180\n" * len(remarks), "--samples", "2").out
+        self.assertEqual([row[1:] for row in rows], list(csv.reader(io.StringIO(plain))))
+
+    def test_a_file_of_write_csv(self):
+        """R puts names into quotes; spreadsheets, blanks around them and a mark in front."""
+        plain = self.rows("tiny.toml", f"{ANGLES}\n30,40,180\n", *SAMPLES)
+        for text in ('"theta_i_deg","theta_o_deg","phi_deg"\n30,40,180\n', " theta_i_deg , theta_o_deg,\tphi_deg\n 30 ,\t40,180 \n",
+                     '"theta_i_deg", "theta_o_deg" ,"phi_deg"\r\n"30", "40" ,"180"\r\n',
+                     f"\ufeff{ANGLES}\n30,40,180\n", f"{ANGLES}\r30,40,180\r"):
+            with self.subTest(text=text):
+                rows = self.rows("tiny.toml", text, *SAMPLES)
+                for row in rows:
+                    row.update(zip(ANGLES.split(","), ("30", "40", "180")))
+                self.assertEqual(rows, plain)
+
+    def test_phi_i_counts_for_albedo(self):
+        options = ("--quantity", "albedo", "--estimator", "exact", "--set", "material.roughness=[0.05, 0.4]")
+        along, across = self.rows("tiny.toml", "theta_i_deg,phi_i_deg\n70,0\n70,90\n", *options)
+        self.assertNotEqual(along["total_r"], across["total_r"])
 
     def test_columns_may_stand_in_any_order(self):
         one = self.rows("tiny.toml", f"{ANGLES}\n30,40,170\n", *SAMPLES)[0]
@@ -234,7 +273,7 @@ class LiveRefusals(EvalTest):
 
     def test_angles(self):
         for column, name in enumerate(("theta_i_deg", "theta_o_deg", "phi_deg")):
-            bad = ["nan", "inf", "-inf", "", "text", "1e999", "0x10", "1 2", "'3'", '"3"']
+            bad = ["nan", "inf", "-inf", "", "text", "1e999", "0x10", "1 2", "'3'"]
             if name != "phi_deg":
                 bad += ["90", "90.0001", "180", "-0.001", "-30"]
             for value in bad:
@@ -300,6 +339,30 @@ class LiveRefusals(EvalTest):
             for name in single:
                 self.refuse_points(f"wavelength_nm,{ANGLES},{name}\n510,1,2,3,4\n", f"'{name}'", "output",
                                    options=("--quantity", quantity))
+
+    def test_columns_that_are_almost_a_key(self):
+        for name, key in (("film_thickness", "film_thickness_nm"), ("film_thickness_um", "film_thickness_nm"),
+                          ("thickness_nm", "film_thickness_nm"), ("Film thickness (nm)", "film_thickness_nm"),
+                          ("filmThicknessNm", "film_thickness_nm"), ("film_thicknes_nm", "film_thickness_nm"),
+                          ("Base_IOR", "base_ior"), ("base-ior", "base_ior"), ("absorption", "absorption_per_nm"),
+                          ("absorption_per_um", "absorption_per_nm"), ("wavelength", "wavelength_nm"),
+                          ("wavelength_um", "wavelength_nm"), ("phi_i", "phi_i_deg"), ("phi_o_deg", "phi_i_deg"),
+                          ("phi_i_rad", "phi_i_deg"), ("ALBEDO", "albedo"), ("roughnes", "roughness")):
+            self.refuse_points(f"{ANGLES},{name}\n30,40,180,1\n", "points.csv", f"'{name}'", f"'{key}'", "allowed")
+        for name in ("Theta_I_deg", "theta_i", "theta_i_rad", "thetai_deg"):
+            self.refuse_points(f"{name},theta_o_deg,phi_deg\n30,40,180\n", f"'{name}'", "'theta_i_deg'", "allowed")
+
+    def test_quotes_that_are_not_of_rfc_4180(self):
+        self.refuse_points(f'{ANGLES},remark\n30,40,180,"a\nb\n', "points.csv:2: ", "not closed")
+        self.refuse_points(f'{ANGLES},remark\n30,40,180,"a\nb"\n30,40,180,a"b\n', "points.csv:4: ", "not in quotes")
+        self.refuse_points(f'{ANGLES},remark\n30,40,180,"a"b\n', "points.csv:2: ", "closing quote", "allowed")
+
+    def test_other_separators(self):
+        self.refuse_points("theta_i_deg;theta_o_deg;phi_deg\n30;40;180\n", "points.csv:1: ", "';'", "allowed: ','")
+        self.refuse_points("theta_i_deg\ttheta_o_deg\tphi_deg\n30\t40\t180\n", "points.csv:1: ", "tabs", "allowed: ','")
+
+    def test_utf_16(self):
+        self.refuse_points(f"{ANGLES}\n30,40,180\n".encode("utf-16"), "points.csv: ", "UTF-16", "allowed: UTF-8")
 
     def test_binary_files(self):
         self.refuse_points(bytes(range(1, 256)) * 20)

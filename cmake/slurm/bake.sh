@@ -6,14 +6,23 @@
 set -eu
 [ $# -ge 3 ] || { echo "usage: $0 RECIPE N OUTPUT [BAKE-OPTION...]" >&2; exit 2; }
 here=$(cd "$(dirname "$0")" && pwd)
-recipe=$1 count=$2 output=$3
+# No name begins with a dash then.
+absolute() {
+  case $1 in /*) printf '%s\n' "$1" ;; *) printf '%s/%s\n' "$PWD" "$1" ;; esac
+}
+recipe=$(absolute "$1") count=$2 output=$(absolute "$3")
 shift 3
+# Slurm expands % in the names of logs, and none of them where there is a backslash.
+case $output in
+  *\\*) echo "$0: $output: a name with a backslash; Slurm allows none in names of logs" >&2; exit 2 ;;
+esac
+logs=$(printf '%s\n' "$output.parts" | sed 's/%/%%/g')
 mkdir -p "$output.parts"
 
 # shellcheck disable=SC2086  # options are words
 array=$(sbatch --parsable ${SBATCH_OPTIONS-} --job-name=sunbeam-bake --array="1-$count" --requeue \
-  --open-mode=append --output="$output.parts/%a.log" "$here/part.sh" "$recipe" "$count" "$output" "$@")
+  --open-mode=append --output="$logs/%a.log" "$here/part.sh" "$recipe" "$count" "$output" "$@")
 # shellcheck disable=SC2086
 merge=$(sbatch --parsable ${SBATCH_OPTIONS-} --job-name=sunbeam-merge --dependency="afterok:${array%%;*}" \
-  --kill-on-invalid-dep=yes --output="$output.parts/merge.log" "$here/merge.sh" "$output")
+  --kill-on-invalid-dep=yes --output="$logs/merge.log" "$here/merge.sh" "$output")
 echo "array ${array%%;*}, merge ${merge%%;*}"

@@ -69,7 +69,7 @@ class SlurmArray(support.CliTest):
 
     def check_table(self, name, *recipe):
         """It is that of one machine, and of the parts only the logs are left."""
-        self.succeed("bake", *recipe, "-o", "one.exr")
+        self.succeed("bake", f"./{recipe[0]}", *recipe[1:], "-o", "one.exr")
         self.assertTrue((self.folder / name).exists(), self.logs(name))
         self.assertEqual((self.folder / name).read_bytes(), (self.folder / "one.exr").read_bytes())
         self.assertEqual(sorted(p.name for p in (self.folder / f"{name}.parts").iterdir()),
@@ -95,6 +95,19 @@ class SlurmArray(support.CliTest):
         self.assertEqual(logs.count("is there already"), PARTS - 1, logs)
         self.assertEqual(logs.count(": part 2 of 4, "), 1, logs)
         self.check_table("later.exr", *recipe)
+
+    def test_names_that_look_like_options_or_patterns(self):
+        recipe, name = "-50%a \\%j.toml", "--help %a%%j 100%.exr"
+        (self.folder / recipe).write_bytes((self.folder / RECIPE[0]).read_bytes())
+        self.submit(name, recipe, *RECIPE[1:-2])
+        self.check_table(name, recipe, *RECIPE[1:-2])
+
+    def test_a_backslash_is_refused_by_name(self):
+        script = support.SOURCE_DIR / "cmake/slurm/bake.sh"
+        result = support.run_command(["sh", script, RECIPE[0], PARTS, "back\\slash.exr"], self.folder, env=self.environment)
+        self.assertEqual((result.code, result.out), (2, ""), result)
+        self.assertIn("back\\slash.exr: a name with a backslash", result.err)
+        self.assertEqual(list(self.folder.glob("*.parts")), [])
 
 
 if __name__ == "__main__":

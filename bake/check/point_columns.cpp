@@ -12,16 +12,6 @@
 namespace sunbeam {
 namespace {
 
-std::vector<std::string> known_columns() {
-  std::vector<std::string> known = {"theta_i_deg", "theta_o_deg", "phi_deg", "phi_i_deg", "wavelength_nm"};
-  known.insert(known.end(), material_keys().begin(), material_keys().end());
-  return known;
-}
-
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 // Returns the letters and digits of a name, in lower case and without a unit behind them: "Film thickness
 // (um)" and "film_thickness_nm" are the same then.
 std::string core_of(const std::string& name) {
@@ -41,22 +31,41 @@ std::string core_of(const std::string& name) {
   return fmt::format("{}", fmt::join(words, ""));
 }
 
-// Returns the share of a key's letters that a name has wrong, 0 if the name is the key's last words.
-double misspelling(const std::string& name, const std::string& key) {
-  constexpr std::size_t kTelling = 6;
-  const std::string core = core_of(name), core_of_key = core_of(key);
-  if (core.size() >= kTelling && core_of_key.ends_with(core)) return 0;
-  const std::size_t wrong = std::min(edit_distance(core, core_of_key), edit_distance(name, key));
-  return static_cast<double>(wrong) / static_cast<double>(core_of_key.size());
+struct Key {
+  std::string name, core;
+};
+
+std::vector<Key> known_keys() {
+  std::vector<std::string> names = {"theta_i_deg", "theta_o_deg", "phi_deg", "phi_i_deg", "wavelength_nm"};
+  names.insert(names.end(), material_keys().begin(), material_keys().end());
+  std::vector<Key> keys;
+  for (const auto& name : names) keys.push_back({name, core_of(name)});
+  return keys;
 }
 
-void refuse_if_almost_known(const Csv& csv, const std::string& name, const std::vector<std::string>& known) {
-  constexpr double kAlmost = 0.25;
-  const auto share = [&](const std::string& key) { return misspelling(name, key); };
-  const std::string& likely = *std::ranges::min_element(known, {}, share);
-  if (share(likely) <= kAlmost)
+// Returns how many letters must change, or any number above `limit` if they are more.
+std::size_t distance(const std::string& a, const std::string& b, std::size_t limit) {
+  if (std::max(a.size(), b.size()) - std::min(a.size(), b.size()) > limit) return limit + 1;
+  return edit_distance(a, b);
+}
+
+// Returns the share of a key's letters that a name has wrong, or any number above a quarter. A name that is
+// the last words of a key has none wrong.
+double misspelling(const std::string& name, const std::string& core, const Key& key) {
+  constexpr std::size_t kTelling = 6;
+  if (core.size() >= kTelling && key.core.ends_with(core)) return 0;
+  const std::size_t limit = key.core.size() / 4;
+  const std::size_t wrong = std::min(distance(core, key.core, limit), distance(name, key.name, limit));
+  return static_cast<double>(wrong) / static_cast<double>(key.core.size());
+}
+
+void refuse_if_almost_known(const Csv& csv, const std::string& name, const std::vector<Key>& keys) {
+  const std::string core = core_of(name);
+  const auto share = [&](const Key& key) { return misspelling(name, core, key); };
+  const Key& likely = *std::ranges::min_element(keys, {}, share);
+  if (share(likely) <= 0.25)
     throw Error(fmt::format("{}: column '{}' is almost '{}'; allowed: that name, or one unlike every key",
-                            csv.name, name, likely));
+                            csv.name, name, likely.name));
 }
 
 }  // namespace
@@ -79,15 +88,15 @@ std::vector<std::string> result_names(Quantity quantity, bool monochromatic) {
 
 PointColumns::PointColumns(const Csv& csv, Quantity quantity)
     : csv_(csv), phi_i_(csv.column("phi_i_deg")), wavelength_(csv.column("wavelength_nm")) {
-  const std::vector<std::string> known = known_columns();
+  const std::vector<Key> keys = known_keys();
   for (const auto& name : result_names(quantity, is_monochromatic()))
     if (csv.column(name))
       throw Error(fmt::format("{}: column '{}' has the name of an output column", csv.name, name));
   for (std::size_t k = 0; k < csv.header.size(); ++k) {
     const std::string& name = csv.header[k];
-    if (contains(material_keys(), name)) material_columns_.push_back(k);
-    if (contains(known, name)) continue;
-    refuse_if_almost_known(csv, name, known);
+    if (std::ranges::count(material_keys(), name) > 0) material_columns_.push_back(k);
+    if (std::ranges::count(keys, name, &Key::name) > 0) continue;
+    refuse_if_almost_known(csv, name, keys);
     if (!name.empty()) unused_.push_back(name);
   }
   theta_i_ = require("theta_i_deg");

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the fuzzing targets of tests/fuzz and runs them; tests/fuzz/README.md says what there is.
+# Builds the fuzzing targets of tests/fuzz and runs them; tests/README.md says more.
 source "$(dirname "$0")/setup.sh"
 
 usage="usage: bash cmake/fuzz.sh TIME [NAME...]

@@ -58,7 +58,7 @@ std::string printable(std::string_view text) {
   std::string result;
   for (std::size_t k = 0; k < text.size(); ++k) {
     const auto byte = static_cast<unsigned char>(text[k]);
-    const auto next = k + 1 < text.size() ? static_cast<unsigned char>(text[k + 1]) : 0;
+    const auto next = static_cast<unsigned char>(k + 1 < text.size() ? text[k + 1] : 'a');
     if (byte == '\n') {
       result += "\\n";
     } else if (byte == '\t') {

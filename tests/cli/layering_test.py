@@ -46,7 +46,7 @@ FLOORS = {
         ("bake/recipe",), ("bake/blocks",), ("bake/factored", "bake/dense"), ("bake/check",), ("bake/jobs",),
         ("bake/scene", "bake/compare", "bake/report"), ("bake/cli",)),
     "runtime/src": (
-        ("runtime/src/base",), ("runtime/src/film",), ("runtime/src/table",), ("runtime/src/sampling",), ("runtime/src/rest",),
+        ("runtime/src/base",), ("runtime/src/exr", "runtime/src/film"), ("runtime/src/table",), ("runtime/src/sampling",), ("runtime/src/rest",),
         ("runtime/src/fit",), ("runtime/src/lookup",)),
 }
 LARGEST_ROOM = 16  # files

@@ -19,6 +19,7 @@
 
 #include "runtime/src/table/table_parts.h"
 #include "sunbeam/core/error.h"
+#include "sunbeam/detail/exr_headers.h"
 #include "sunbeam/detail/file.h"
 #include "sunbeam/table_io.h"
 
@@ -207,6 +208,7 @@ std::string table_exr_bytes(const TableView& table) {
 
 Table parse_table_exr(std::string_view bytes, const std::string& name) {
   if (bytes.size() < 8 || !Imf::isImfMagic(bytes.data())) throw Error(name + ": not an OpenEXR file");
+  check_exr_headers(bytes, name);
   TableParts parts;
   try {
     parts = read_parts(bytes, name);

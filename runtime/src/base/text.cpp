@@ -13,6 +13,25 @@ void append_hexadecimal(unsigned char byte, std::string& text) {
   text += {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15]};
 }
 
+// How many bytes the character at the front of `text` has; 0 if it is no character of UTF-8. Overlong forms,
+// surrogates and what lies beyond U+10FFFF are none.
+std::size_t bytes_of_character(std::string_view text) {
+  const auto byte = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u; };
+  const unsigned first = byte(0);
+  if (first < 0x80) return 1;
+  const std::size_t count = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  for (std::size_t k = 1; k < count; ++k)
+    if ((byte(k) & 0xc0) != 0x80) return 0;
+  const unsigned second = byte(1);
+  const bool is_sound = first < 0xe0    ? first >= 0xc2
+                        : first == 0xe0 ? second >= 0xa0
+                        : first == 0xed ? second < 0xa0
+                        : first < 0xf0  ? true
+                        : first == 0xf0 ? second >= 0x90
+                                        : first < 0xf4 || (first == 0xf4 && second < 0x90);
+  return is_sound ? count : 0;
+}
+
 }  // namespace
 
 std::string to_text(double value) {
@@ -38,6 +57,11 @@ bool parse_number(std::string_view text, double& value) {
   return result.ec == std::errc() && result.ptr == text.data() + text.size();
 }
 
+bool parse_whole_number(std::string_view text, std::uint64_t& value) {
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+  return !text.empty() && result.ec == std::errc() && result.ptr == text.data() + text.size();
+}
+
 std::vector<std::string> split(std::string_view text, char separator) {
   std::vector<std::string> parts;
   for (;;) {
@@ -52,6 +76,20 @@ std::string_view without_byte_order_mark(std::string_view text) {
   constexpr std::string_view kMark = "\xef\xbb\xbf";
   if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
   return text;
+}
+
+bool is_plain_text(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t count = bytes_of_character(text);
+    if (count == 0) return false;
+    const auto first = static_cast<unsigned char>(text[0]);
+    const bool is_break = first == '\n' || first == '\t';
+    const bool is_control =
+        first < 0x20 || first == 0x7f || (first == 0xc2 && static_cast<unsigned char>(text[1]) < 0xa0);
+    if (is_control && !is_break) return false;
+    text.remove_prefix(count);
+  }
+  return true;
 }
 
 std::string printable(std::string_view text) {

@@ -1,6 +1,7 @@
 #include "runtime/src/table/table_checks.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/text.h"
@@ -9,7 +10,7 @@ namespace sunbeam {
 inline namespace v1 {
 namespace {
 
-const NdArray* find(const TableParts& parts, const std::string& name) {
+NdArray* find(TableParts& parts, const std::string& name) {
   const auto at =
       std::find_if(parts.arrays.begin(), parts.arrays.end(), [&](const auto& a) { return a.name() == name; });
   return at == parts.arrays.end() ? nullptr : &*at;
@@ -68,9 +69,9 @@ void require_finite(const ArrayView& array) {
   });
 }
 
-NdArray checked_array(const TableParts& parts, const std::string& name,
-                      std::span<const char* const> axis_names, std::size_t channels) {
-  const NdArray* array = find(parts, name);
+NdArray checked_array(TableParts& parts, const std::string& name, std::span<const char* const> axis_names,
+                      std::size_t channels) {
+  NdArray* array = find(parts, name);
   if (!array) throw Error("array '" + name + "' is missing (the file holds: " + inventory(parts) + ")");
   if (array->axes().size() != axis_names.size())
     throw Error("array '" + name + "' has " + std::to_string(array->axes().size()) + " axes; expected " +
@@ -83,7 +84,9 @@ NdArray checked_array(const TableParts& parts, const std::string& name,
     throw Error("array '" + name + "' holds " +
                 (channels == 1 ? "colours; expected numbers" : "numbers; expected colours"));
   require_finite(*array);
-  return *array;
+  NdArray taken = std::move(*array);
+  static_cast<ArrayShape&>(*array) = taken;  // messages still list it
+  return taken;
 }
 
 void check_symmetry(const Table& table) {

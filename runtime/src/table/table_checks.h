@@ -16,8 +16,8 @@ void require_finite(const ArrayView& array);
 
 // Returns the array of that name, if its axes have those names, it has as many channels and its values are
 // finite.
-NdArray checked_array(const TableParts& parts, const std::string& name,
-                      std::span<const char* const> axis_names, std::size_t channels = 3);
+NdArray checked_array(TableParts& parts, const std::string& name, std::span<const char* const> axis_names,
+                      std::size_t channels = 3);
 
 // Checks that the symmetry is the roughness's.
 void check_symmetry(const Table& table);

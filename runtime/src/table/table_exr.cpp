@@ -16,6 +16,7 @@
 #include <ImfVersion.h>
 
 #include <cstring>
+#include <utility>
 
 #include "runtime/src/table/table_parts.h"
 #include "sunbeam/core/error.h"
@@ -147,22 +148,47 @@ Attributes string_attributes(const Imf::Header& header) {
   return result;
 }
 
-NdArray read_array(Imf::MultiPartInputFile& file, int part) {
-  const Imf::Header& header = file.header(part);
+// The pixel type of channels R, G and B, or of Y alone; there must be no other.
+Imf::PixelType pixel_type(const Imf::Header& header, const std::string& name) {
+  const Imf::ChannelList& channels = header.channels();
+  const Imf::Channel* first = channels.findChannel("Y");
+  const std::size_t expected = first ? 1 : 3;
+  if (!first) first = channels.findChannel("R");
+  if (!first || (first->type != Imf::HALF && first->type != Imf::FLOAT))
+    throw Error("part '" + name + "' is not a table array: it has no half or float channel R or Y");
+  std::size_t count = 0;
+  for (auto at = channels.begin(); at != channels.end(); ++at, ++count)
+    if (at.channel().type != first->type || at.channel().xSampling != 1 || at.channel().ySampling != 1)
+      throw Error("part '" + name + "' is not a table array: channel '" + at.name() +
+                  "' has another type or sampling than '" + (expected == 1 ? "Y'" : "R'"));
+  const bool has_all = expected == 1 || (channels.findChannel("G") && channels.findChannel("B"));
+  if (count != expected || !has_all)
+    throw Error("part '" + name + "' is not a table array: it has " + std::to_string(count) +
+                " channels; allowed: R, G and B, or Y alone");
+  return first->type;
+}
+
+// The array that a part holds, without its values. Its axes are held against the data window.
+ArrayShape read_shape(const Imf::Header& header) {
   const std::string name = header.hasName() ? header.name() : "";
   const Attributes attributes = string_attributes(header);
   if (!attributes.count("axis.0.name"))
     throw Error("part '" + name + "' is not a table array: it has no sunbeam.axis.* attributes");
-  const Imf::Channel* single = header.channels().findChannel("Y");
-  const Imf::Channel* channel = single ? single : header.channels().findChannel("R");
-  if (!channel || (channel->type != Imf::HALF && channel->type != Imf::FLOAT))
-    throw Error("part '" + name + "' is not a table array: it has no half or float channel R or Y");
-  NdArray array(name, parse_axes(attributes, name),
-                channel->type == Imf::HALF ? Precision::half_float : Precision::single_float, single ? 1 : 3);
-  const ImageSize size = image_size(array);
-  const Imath::Box2i& window = header.dataWindow();
-  if (window != Imath::Box2i({0, 0}, {size.width - 1, size.height - 1}))
+  if (header.hasType() && header.type() != Imf::SCANLINEIMAGE)
+    throw Error("part '" + name + "' is of type '" + header.type() + "'; allowed: scanlineimage");
+  const Imf::PixelType type = pixel_type(header, name);
+  ArrayShape shape(name, parse_axes(attributes, name),
+                   type == Imf::HALF ? Precision::half_float : Precision::single_float,
+                   header.channels().findChannel("Y") ? 1 : 3);
+  const ImageSize size = image_size(shape);
+  if (header.dataWindow() != Imath::Box2i({0, 0}, {size.width - 1, size.height - 1}))
     throw Error("array '" + name + "': the image size does not agree with the axes");
+  return shape;
+}
+
+NdArray read_array(Imf::MultiPartInputFile& file, int part) {
+  NdArray array(read_shape(file.header(part)));
+  const ImageSize size = image_size(array);
   Imf::InputPart input(file, part);
   input.setFrameBuffer(
       frame_buffer(array.values().data(), Imf::FLOAT, sizeof(float), array.channels(), size.width));
@@ -215,7 +241,7 @@ Table parse_table_exr(std::string_view bytes, const std::string& name) {
   } catch (const std::exception& error) {
     throw Error(name + ": cannot read the table: " + error.what());
   }
-  return from_parts(parts, name);
+  return from_parts(std::move(parts), name);
 }
 
 Table load_table_exr(const std::string& path) { return parse_table_exr(read_file(path), path); }

@@ -55,14 +55,31 @@ const std::string& require(const Attributes& attributes, std::string_view key) {
   return at->second;
 }
 
+// Calls visit(word) for what single spaces separate.
+template <class Visit>
+void for_each_word(std::string_view text, Visit visit) {
+  for (;;) {
+    const auto end = text.find(' ');
+    visit(text.substr(0, end));
+    if (end == std::string_view::npos) return;
+    text.remove_prefix(end + 1);
+  }
+}
+
+// A word as messages show it.
+std::string quoted(std::string_view word) {
+  constexpr std::size_t kMost = 40;
+  return std::string(word.substr(0, kMost)) + (word.size() > kMost ? "..." : "");
+}
+
 std::vector<double> parse_numbers(const Attributes& attributes, const std::string& key) {
   std::vector<double> numbers;
-  for (const auto& text : split(require(attributes, key), ' ')) {
+  for_each_word(require(attributes, key), [&](std::string_view text) {
     double value = 0;
     if (!parse_number(text, value) || !std::isfinite(value))
-      throw Error("attribute '" + key + "' holds '" + text + "', which is no finite number");
+      throw Error("attribute '" + key + "' holds '" + quoted(text) + "', which is no finite number");
     numbers.push_back(value);
-  }
+  });
   return numbers;
 }
 
@@ -102,7 +119,7 @@ void write_wavelengths(const Wavelengths& w, Attributes& attributes) {
 
 constexpr const char* kGridPrefix = "grid.";
 
-Factors read_factors(const TableParts& parts, const Table& table) {
+Factors read_factors(TableParts& parts, const Table& table) {
   Factors factors;
   Attributes grid;
   for (const auto& [key, value] : parts.attributes)
@@ -145,7 +162,7 @@ FrameKind read_frame(const Attributes& attributes) {
   throw Error("attribute 'rest_frame' is '" + name + "'; allowed: closed, none");
 }
 
-void read_dense(const TableParts& parts, Table& table) {
+void read_dense(TableParts& parts, Table& table) {
   table.frame = read_frame(parts.attributes);
   table.film_reflectance = checked_array(parts, "film_reflectance", kFilmAxes);
   if (!table.material.is_smooth() && table.frame == FrameKind::closed)
@@ -155,7 +172,7 @@ void read_dense(const TableParts& parts, Table& table) {
 }
 
 // What the colours are. `spectrum` is part of the info already.
-void read_spectrum(const TableParts& parts, Table& table) {
+void read_spectrum(TableParts& parts, Table& table) {
   const Attributes& attributes = parts.attributes;
   const std::string& spectrum = require(attributes, "spectrum");
   if (spectrum != "rgb3" && spectrum != "full")
@@ -191,8 +208,21 @@ void check_below_exterior(const Table& table, int version) {
     throw Error(found + ": a dense table has one base_ior there; found " + std::to_string(base_ior.size()));
 }
 
-Table build(const TableParts& parts) {
+void check_texts(const Attributes& attributes) {
+  for (const auto& [key, value] : attributes)
+    if (!is_plain_text(key) || !is_plain_text(value))
+      throw Error("attribute '" + printable(key) + "' is not UTF-8, or holds a control character");
+  for (const char* key : {"seed", "samples"}) {
+    std::uint64_t number = 0;
+    if (const std::string& text = require(attributes, key); !parse_whole_number(text, number))
+      throw Error("attribute '" + std::string(key) + "' is '" + quoted(text) + "'; allowed: a whole number");
+  }
+}
+
+// The arrays of `parts` go into the table, hence the hash before.
+Table build(TableParts& parts) {
   const int version = read_schema_version(parts);
+  const std::string hash = content_hash_of(parts.attributes, {parts.arrays.begin(), parts.arrays.end()});
   Table table;
   table.schema_version = version;
   for (const auto& key : material_keys())
@@ -212,9 +242,9 @@ Table build(const TableParts& parts) {
     throw Error("encoding is '" + encoding + "'; allowed: dense, factored");
   check_ranges(table);
   check_below_exterior(table, version);
-  if (!is_hash_of_content(require(parts.attributes, "content_hash"),
-                          content_hash_of(parts.attributes, {parts.arrays.begin(), parts.arrays.end()})))
+  if (!is_hash_of_content(require(parts.attributes, "content_hash"), hash))
     throw Error("content does not match its hash: the file is damaged");
+  check_texts(parts.attributes);
   for (const char* key : kRequiredInfo) table.info[key] = require(parts.attributes, key);
   read_spectrum(parts, table);
   for (const auto& [key, value] : parts.attributes)
@@ -248,10 +278,13 @@ std::vector<Axis> parse_axes(const Attributes& attributes, const std::string& ar
     Axis axis;
     axis.name = require(attributes, prefix + "name");
     axis.unit = require(attributes, prefix + "unit");
-    const auto number = [&](const std::string& text) {
+    if (!is_plain_text(axis.name) || !is_plain_text(axis.unit))
+      throw Error("array '" + array_name + "': axis '" + axis.name +
+                  "' has a name or unit that is not UTF-8, or holds a control character");
+    const auto number = [&](std::string_view text) {
       double value = 0;
       if (!parse_number(text, value))
-        throw Error("array '" + array_name + "': axis '" + axis.name + "' holds '" + text +
+        throw Error("array '" + array_name + "': axis '" + axis.name + "' holds '" + quoted(text) +
                     "', which is no number");
       return value;
     };
@@ -264,8 +297,8 @@ std::vector<Axis> parse_axes(const Attributes& attributes, const std::string& ar
       throw Error("array '" + array_name + "': axis '" + axis.name + "' has interpolation '" + interpolation +
                   "'; allowed: linear, cubic");
     axis.is_cubic = interpolation == "cubic";
-    for (const auto& node : split(require(attributes, prefix + "nodes"), ' '))
-      axis.nodes.push_back(number(node));
+    for_each_word(require(attributes, prefix + "nodes"),
+                  [&](std::string_view node) { axis.nodes.push_back(number(node)); });
     axes.push_back(std::move(axis));
   }
   return axes;
@@ -292,12 +325,11 @@ Attributes attributes_of(const TableView& view) {
   return attributes;
 }
 
-Table from_parts(const TableParts& parts, const std::string& name) {
+Table from_parts(TableParts parts, const std::string& name) {
   try {
-    TableParts sorted = parts;
-    std::sort(sorted.arrays.begin(), sorted.arrays.end(),
+    std::sort(parts.arrays.begin(), parts.arrays.end(),
               [](const auto& a, const auto& b) { return a.name() < b.name(); });
-    return build(sorted);
+    return build(parts);
   } catch (const Error& error) {
     throw Error(name + ": not a usable table: " + error.what());
   }

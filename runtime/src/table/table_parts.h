@@ -25,7 +25,7 @@ Attributes attributes_of(const TableView& table);
 
 // Builds a table. It checks schema, names, ranks, sizes, finiteness and the content hash before. Throws Error
 // whose message starts with `name`.
-Table from_parts(const TableParts& parts, const std::string& name);
+Table from_parts(TableParts parts, const std::string& name);
 
 // These write axes as text attributes of one array, and read them back.
 Attributes describe_axes(const std::vector<Axis>& axes);

@@ -1,6 +1,7 @@
 // This file turns numbers into text that reads back to the same bits, and text into numbers.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,10 @@ std::string to_text(const std::vector<double>& values);  // separated by single 
 // Reads a number, which must be the whole text ("nan" and "inf" parse). Returns false if it is not.
 bool parse_number(std::string_view text, double& value);
 
+// Reads a whole number of decimal digits alone, which must be the whole text. Returns false if it is not, or
+// is larger than 2^64 - 1.
+bool parse_whole_number(std::string_view text, std::uint64_t& value);
+
 std::vector<std::string> split(std::string_view text, char separator);
 
 // Returns the text without the byte order mark of UTF-8 that some editors put in front.
@@ -23,6 +28,9 @@ std::string_view without_byte_order_mark(std::string_view text);
 // Returns the text with its control characters as \n, \t, \x1b and so on, for messages that quote what a file
 // says. Bytes of UTF-8 stay as they are, except the control characters U+0080 to U+009F.
 std::string printable(std::string_view text);
+
+// Returns whether a text is UTF-8 without control characters other than line feeds and tabs.
+bool is_plain_text(std::string_view text);
 
 }  // namespace v1
 }  // namespace sunbeam

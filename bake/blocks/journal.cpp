@@ -8,7 +8,11 @@
 
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstring>
+#include <functional>
+#include <limits>
+#include <map>
 
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/hash.h"
@@ -38,6 +42,35 @@ std::string record_hash(const RecordHead& head, std::string_view values) {
   return hash.text();
 }
 
+using Properties = std::map<std::string, std::string, std::less<>>;
+
+// Lines of "key value". A key that is there twice is an error.
+Properties read_properties(std::string_view text) {
+  Properties properties;
+  for (const auto& line : split(text, '\n')) {
+    const auto space = line.find(' ');
+    if (space == std::string::npos) throw Error("its header has a line without a value");
+    if (!properties.emplace(line.substr(0, space), line.substr(space + 1)).second)
+      throw Error(fmt::format("its header has '{}' twice", line.substr(0, space)));
+  }
+  return properties;
+}
+
+const std::string& find(const Properties& properties, std::string_view key) {
+  const auto at = properties.find(key);
+  if (at == properties.end()) throw Error(fmt::format("its header has no '{}'", key));
+  return at->second;
+}
+
+std::uint64_t whole_number(const Properties& properties, std::string_view key, std::uint64_t least,
+                           std::uint64_t most) {
+  std::uint64_t value = 0;
+  const std::string& text = find(properties, key);
+  if (!parse_whole_number(text, value) || value < least || value > most)
+    throw Error(fmt::format("its header has {} '{:.40}'; allowed: {} to {}", key, text, least, most));
+  return value;
+}
+
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -50,20 +83,17 @@ std::string BakeIdentity::text() const {
 }
 
 BakeIdentity BakeIdentity::parse(const std::string& text) {
-  BakeIdentity identity;
   const auto blank = text.find("\n\n");
   if (blank == std::string::npos) throw Error("its header has no recipe");
-  for (const auto& line : split(text.substr(0, blank), '\n')) {
-    const auto space = line.find(' ');
-    const std::string key = line.substr(0, space);
-    const std::string value = space == std::string::npos ? "" : line.substr(space + 1);
-    if (key == "version") identity.version = value;
-    if (key == "recipe_hash") identity.recipe_hash = value;
-    if (key == "encoding") identity.encoding = value;
-    if (key == "seed") identity.seed = std::stoull(value);
-    if (key == "shard") identity.shard = std::stoi(value);
-    if (key == "shards") identity.shards = std::stoi(value);
-  }
+  const Properties properties = read_properties(std::string_view(text).substr(0, blank));
+  BakeIdentity identity;
+  identity.version = find(properties, "version");
+  identity.recipe_hash = find(properties, "recipe_hash");
+  identity.encoding = find(properties, "encoding");
+  identity.seed = whole_number(properties, "seed", 0, std::numeric_limits<std::uint64_t>::max());
+  identity.shards = static_cast<int>(whole_number(properties, "shards", 1, kMostShards));
+  const auto last = static_cast<std::uint64_t>(identity.shards - 1);
+  identity.shard = static_cast<int>(whole_number(properties, "shard", 0, last));
   identity.recipe = text.substr(blank + 2);
   return identity;
 }
@@ -112,12 +142,19 @@ std::unique_ptr<Journal> Journal::open(const std::string& path, const BakeIdenti
 }
 
 std::unique_ptr<Journal> Journal::read(const std::string& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) throw Error(path + ": cannot read: " + std::strerror(errno));
   std::unique_ptr<Journal> journal(new Journal(path, descriptor));
+  journal->require_regular_file();
   journal->read_header();
   journal->read_records();
   return journal;
+}
+
+void Journal::require_regular_file() const {
+  struct stat status {};
+  if (::fstat(descriptor_, &status) != 0) fail("cannot read");
+  if (!S_ISREG(status.st_mode)) throw Error(path_ + ": is not a regular file; allowed: the part of a bake");
 }
 
 void Journal::write_header(const BakeIdentity& identity) {
@@ -144,7 +181,11 @@ void Journal::read_header() {
     throw Error(path_ + ": its header is cut short");
   if (!is_hash_of_content({hash, sizeof hash}, content_hash(text)))
     throw Error(path_ + ": its header is damaged");
-  identity_ = BakeIdentity::parse(text);
+  try {
+    identity_ = BakeIdentity::parse(text);
+  } catch (const Error& error) {
+    throw Error(path_ + ": " + error.what());
+  }
 }
 
 void Journal::read_records() {
@@ -163,7 +204,10 @@ void Journal::read_records() {
     if (!read_at(start, values.data(), head.size) ||
         !is_hash_of_content({hash, sizeof hash}, record_hash(head, values)))
       break;
-    places_[head.task] = {{head.walks, head.worst_error}, start, head.size};
+    if (!(head.worst_error >= 0) || !std::isfinite(head.worst_error)) break;
+    const Place place{{head.walks, head.worst_error}, start, head.size};
+    if (!places_.emplace(head.task, place).second)
+      throw Error(fmt::format("{}: is damaged: it holds block {} twice", path_, head.task));
     end_ = start + head.size;
   }
   damaged_bytes_ = file_size - end_;

@@ -24,8 +24,11 @@ struct BakeIdentity {
   std::uint64_t seed = 1;
   int shard = 0, shards = 1;  // shard counts from 0
 
+  static constexpr int kMostShards = 100000;
+
   std::string text() const;
-  static BakeIdentity parse(const std::string& text);  // throws Error
+  // Throws Error unless the text has each property once, and the shard is one of 1 to kMostShards.
+  static BakeIdentity parse(const std::string& text);
 
   // Returns an empty text if blocks of both mix, else which property differs and how. Shards are not
   // compared.
@@ -69,6 +72,7 @@ class Journal : public BlockStore {
 
   Journal(std::string path, int descriptor);
   void write_header(const BakeIdentity& identity);
+  void require_regular_file() const;
   void read_header();
   void read_records();
   void append(const std::string& bytes);

@@ -23,14 +23,21 @@ void require_same_bake(const Journal& part, const Journal& first) {
                             part.identity().shards, first.path(), first.identity().shards));
 }
 
+// The first ten of them, and how many more there are.
+std::string listed(std::vector<std::size_t> numbers) {
+  constexpr std::size_t kMost = 10;
+  const std::size_t count = numbers.size();
+  numbers.resize(std::min(count, kMost));
+  const std::string first = fmt::format("{}", fmt::join(numbers, ", "));
+  return count > kMost ? fmt::format("{} and {} more", first, count - kMost) : first;
+}
+
 }  // namespace
 
 Parts::Parts(const std::vector<std::string>& paths) {
   for (const auto& path : paths) {
     auto part = Journal::read(path);
     const int shard = part->identity().shard, shards = part->identity().shards;
-    if (shard < 0 || shard >= shards)
-      throw Error(fmt::format("{}: its header is damaged: part {} of {}", path, shard + 1, shards));
     if (parts_.empty()) parts_.resize(static_cast<std::size_t>(shards));
     const auto any = std::ranges::find_if(parts_, [](const auto& p) { return p != nullptr; });
     require_same_bake(*part, any == parts_.end() ? *part : **any);
@@ -43,7 +50,7 @@ Parts::Parts(const std::vector<std::string>& paths) {
   for (std::size_t k = 0; k < parts_.size(); ++k)
     if (!parts_[k]) missing.push_back(k + 1);
   if (!missing.empty())
-    throw Error(fmt::format("of {} parts these are missing: {}", parts_.size(), fmt::join(missing, ", ")));
+    throw Error(fmt::format("of {} parts these are missing: {}", parts_.size(), listed(missing)));
 }
 
 void Parts::require_whole(const BakeJob& job) {
@@ -56,6 +63,9 @@ void Parts::require_whole(const BakeJob& job) {
     if (lacking > 0 || part.damaged_bytes() > 0)
       throw Error(fmt::format("{}: is damaged or cut short: {} of its {} blocks cannot be read", part.path(),
                               lacking, range.size()));
+    if (part.blocks() != range.size())
+      throw Error(fmt::format("{}: holds {} blocks; allowed: the {} of its shard", part.path(), part.blocks(),
+                              range.size()));
     ranges_.push_back(range);
   }
 }

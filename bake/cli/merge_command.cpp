@@ -22,6 +22,13 @@ std::string advice(const Recipe& recipe, const std::string& encoding) {
       last);
 }
 
+Encoding encoding_of(const BakeIdentity& identity, const std::string& path) {
+  for (const Encoding encoding : {Encoding::factored, Encoding::dense})
+    if (identity.encoding == name_of(encoding)) return encoding;
+  throw Error(
+      fmt::format("{}: its header has encoding '{:.40}'; allowed: factored, dense", path, identity.encoding));
+}
+
 }  // namespace
 
 int run_merge(const MergeOptions& options) {
@@ -29,8 +36,9 @@ int run_merge(const MergeOptions& options) {
   Parts parts(options.parts);
   const BakeIdentity& identity = parts.identity();
   const Recipe recipe = parse_recipe(identity.recipe, "recipe of " + options.parts.front());
-  const bool is_factored = identity.encoding == name_of(Encoding::factored);
-  const auto job = make_job(recipe, is_factored ? Encoding::factored : Encoding::dense, identity.seed);
+  const Encoding encoding = encoding_of(identity, options.parts.front());
+  require_reasonable_size(recipe, encoding);
+  const auto job = make_job(recipe, encoding, identity.seed);
   parts.require_whole(*job);
   require_writable(options.output);
   FinishedBake table(recipe, *job, parts);

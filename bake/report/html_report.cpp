@@ -24,16 +24,22 @@ std::string percent(double share) {
   return share > 0 && share < kLeast ? "under 1e-6 %" : fmt::format("{:.3g} %", 100 * share);
 }
 
-std::string section(std::string_view id, std::string_view title, std::string_view text,
-                    std::string_view content) {
-  return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n<p>{}</p>\n{}\n</section>\n", id, title, text,
-                     content);
+Markup section(std::string_view id, std::string_view title, const Markup& text, const Markup& content) {
+  return format_markup("<section id=\"{}\">\n<h2>{}</h2>\n<p>{}</p>\n{}\n</section>\n", id, title, text,
+                       content);
 }
 
-std::string image(const Image& picture, std::string_view description) {
-  return fmt::format(R"(<img src="{}" width="{}" height="{}" alt="{}">)", png_data_uri(picture),
-                     picture.width, picture.height, escape_markup(description));
+Markup image(const Image& picture, std::string_view description) {
+  return format_markup(R"(<img src="{}" width="{}" height="{}" alt="{}">)", png_data_uri(picture),
+                       picture.width, picture.height, description);
 }
+
+// A drawing inside a page.
+Markup drawing(double width, double height, std::string_view title, std::string_view content) {
+  return {inline_svg(width, height, title, content)};
+}
+
+Markup in_grid(const Markup& figures) { return format_markup("<div class=\"grid\">\n{}</div>", figures); }
 
 // A parameter point in the words of a caption: what the table sweeps.
 std::string describe(const Table& table, const Parameters& parameters) {
@@ -77,17 +83,17 @@ std::vector<Parameters> showcase(const Table& table) {
   return result;
 }
 
-std::string card(std::string_view id, std::string_view label, double value, std::string_view shown,
-                 std::string_view note) {
-  return fmt::format(
+Markup card(std::string_view id, std::string_view label, double value, std::string_view shown,
+            std::string_view note) {
+  return format_markup(
       R"(<div class="card"><span>{}</span><data id="{}" value="{}">{}</data><small>{}</small></div>)", label,
       id, to_text(value), shown, note);
 }
 
-std::string cards(const ReportSource& source) {
+Markup cards(const ReportSource& source) {
   const auto& [table, recipe, settings, report, name, bytes, command] = source;
   const auto allowed = [](double tolerance) { return "allowed " + percent(tolerance); };
-  return "<div class=\"cards\">\n" +
+  return Markup{"<div class=\"cards\">\n"} +
          card("error_median", "median error", report.error.median, percent(report.error.median),
               allowed(settings.tolerance_median)) +
          card("error_p95", "95th percentile", report.error.p95, percent(report.error.p95), "") +
@@ -102,33 +108,33 @@ std::string cards(const ReportSource& source) {
               percent(report.noise_floor.median), "of the comparison") +
          card("points", "random points", static_cast<double>(report.points.size()),
               std::to_string(report.points.size()), "between the grid's nodes") +
-         "\n</div>\n";
+         Markup{"\n</div>\n"};
 }
 
-std::string summary(const ReportSource& source) {
+Markup summary(const ReportSource& source) {
   const bool passed = within_tolerance(source.report, source.settings);
-  return fmt::format(
+  return format_markup(
              "<header id=\"summary\">\n<p class=\"badge {}\">{}</p>\n<h1>{}</h1>\n"
              "<p class=\"lead\">A table of {} bytes against live evaluation "
              "(<code id=\"truth\">{}</code>).</p>\n",
-             passed ? "pass" : "fail", passed ? "PASS" : "FAIL", escape_markup(source.table_name),
-             source.table_bytes, source.report.truth) +
-         cards(source) + "</header>\n";
+             passed ? "pass" : "fail", passed ? "PASS" : "FAIL", source.table_name, source.table_bytes,
+             source.report.truth) +
+         cards(source) + Markup{"</header>\n"};
 }
 
-std::string error_section(const ReportSource& source) {
-  std::string figures;
+Markup error_section(const ReportSource& source) {
+  Markup figures;
   for (const auto& axis : error_axes(source.table, source.report))
-    figures += fmt::format("<figure>{}</figure>\n",
-                           inline_svg(kErrorChartWidth, kErrorChartHeight, "Error over " + axis.name,
-                                      error_chart(axis, source.report, source.settings.tolerance_p99)));
+    figures += format_markup("<figure>{}</figure>\n",
+                             drawing(kErrorChartWidth, kErrorChartHeight, "Error over " + axis.name,
+                                     error_chart(axis, source.report, source.settings.tolerance_p99)));
   return section(
       "error", "Where the error lies",
-      "Error of a point: the absolute difference between table and live, times the cosine, over "
-      "all outgoing directions, as a share of the live reflection. Below, apart, the noise of the "
-      "comparison itself: how far two live runs differ. What stands above it is the table's. Ticks "
-      "on the lower edge are the table's nodes. Parameters that the table holds fixed are left out.",
-      "<div class=\"grid\">\n" + figures + "</div>");
+      {"Error of a point: the absolute difference between table and live, times the cosine, over "
+       "all outgoing directions, as a share of the live reflection. Below, apart, the noise of the "
+       "comparison itself: how far two live runs differ. What stands above it is the table's. Ticks "
+       "on the lower edge are the table's nodes. Parameters that the table holds fixed are left out."},
+      in_grid(figures));
 }
 
 std::vector<VerifyPoint> worst_points(const VerifyReport& report) {
@@ -140,8 +146,8 @@ std::vector<VerifyPoint> worst_points(const VerifyReport& report) {
   return points;
 }
 
-std::string worst_row(std::size_t rank, const VerifyPoint& p) {
-  return fmt::format(
+Markup worst_row(std::size_t rank, const VerifyPoint& p) {
+  return format_markup(
       "<tr><td>{}</td><td>{:.2f}</td><td>{:.4f}</td><td>{:.4f}</td><td>{:.2f}</td><td>{:.2f}</td>"
       "<td>{}</td><td>{}</td><td>{:.2g}</td></tr>\n",
       rank, p.parameters.film_thickness_nm, p.parameters.base_ior, p.parameters.absorption_per_nm,
@@ -149,20 +155,20 @@ std::string worst_row(std::size_t rank, const VerifyPoint& p) {
       p.dirac_error);
 }
 
-std::string worst_plot(const ReportSource& source, std::size_t rank, const VerifyPoint& p) {
+Markup worst_plot(const ReportSource& source, std::size_t rank, const VerifyPoint& p) {
   const TableAppearance table(source.table, p.parameters, OutsideGrid::clamp);
   const LiveAppearance live(table.material(), source.recipe.spectrum, kCurveEstimates);
   const std::string caption =
       fmt::format("{}: {}, theta_i {:.1f}\u00b0, error {}", rank, describe(source.table, p.parameters),
                   std::acos(p.cos_i) * 180 / kPi, percent(p.error));
-  return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n",
-                     inline_svg(kPolarWidth, kPolarHeight, caption,
-                                polar_chart(table, live, direction_from_cosine(p.cos_i, p.phi_i))),
-                     caption);
+  return format_markup("<figure>{}<figcaption>{}</figcaption></figure>\n",
+                       drawing(kPolarWidth, kPolarHeight, caption,
+                               polar_chart(table, live, direction_from_cosine(p.cos_i, p.phi_i))),
+                       caption);
 }
 
-std::string worst_section(const ReportSource& source) {
-  std::string rows, plots;
+Markup worst_section(const ReportSource& source) {
+  Markup rows, plots;
   std::size_t rank = 0;
   for (const auto& point : worst_points(source.report)) {
     rows += worst_row(++rank, point);
@@ -170,18 +176,20 @@ std::string worst_section(const ReportSource& source) {
   }
   return section(
       "worst", "The worst points",
-      fmt::format(
+      format_markup(
           "BRDF times cosine in the plane of incidence, linear Rec.709; the radius is the square root "
           "of the value. The grey ray is the light, a dashed one a smooth film's mirror direction. "
           "Live: {}.",
           live_method(source.table.material, kCurveEstimates)),
-      "<div class=\"wide\"><table>\n<thead><tr><th></th><th>film_thickness_nm</th><th>base_ior</th>"
-      "<th>absorption_per_nm</th><th>theta_i (\u00b0)</th><th>phi_i (\u00b0)</th><th>error</th>"
-      "<th>noise</th><th>Dirac error</th></tr></thead>\n<tbody>\n" +
-          rows + "</tbody>\n</table></div>\n<div class=\"grid\">\n" + plots + "</div>");
+      format_markup(
+          "<div class=\"wide\"><table>\n<thead><tr><th></th><th>film_thickness_nm</th><th>base_ior</th>"
+          "<th>absorption_per_nm</th><th>theta_i (\u00b0)</th><th>phi_i (\u00b0)</th><th>error</th>"
+          "<th>noise</th><th>Dirac error</th></tr></thead>\n<tbody>\n{}"
+          "</tbody>\n</table></div>\n{}",
+          rows, in_grid(plots)));
 }
 
-std::string slices_section(const ReportSource& source) {
+Markup slices_section(const ReportSource& source) {
   const auto points = showcase(source.table);
   const int threads = source.settings.threads;
   std::vector<Image> slices;
@@ -191,20 +199,20 @@ std::string slices_section(const ReportSource& source) {
         slice_image(TableAppearance(source.table, p, OutsideGrid::clamp), kSliceHeight, threads));
     peak = std::max(peak, brightest(slices.back()));
   }
-  std::string figures;
+  Markup figures;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const std::string caption = describe(source.table, points[k]);
-    figures += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n",
-                           image(scaled(slices[k], 1 / peak), "Slice at " + caption), caption);
+    figures += format_markup("<figure>{}<figcaption>{}</figcaption></figure>\n",
+                             image(scaled(slices[k], 1 / peak), "Slice at " + caption), caption);
   }
   return section(
       "slices", "Below the film",
-      fmt::format("The table's <code>rest</code>, all light that has been below the film, times pi: "
-                  "theta_o from -90\u00b0 (the side of the light) to 90\u00b0 (the mirror side) to "
-                  "the right, theta_i from 0 to 90\u00b0 upwards. All pictures are scaled alike; "
-                  "white stands for {:.3g}.",
-                  peak),
-      "<div class=\"grid\">\n" + figures + "</div>");
+      format_markup("The table's <code>rest</code>, all light that has been below the film, times pi: "
+                    "theta_o from -90\u00b0 (the side of the light) to 90\u00b0 (the mirror side) to "
+                    "the right, theta_i from 0 to 90\u00b0 upwards. All pictures are scaled alike; "
+                    "white stands for {:.3g}.",
+                    peak),
+      in_grid(figures));
 }
 
 struct SpherePair {
@@ -229,14 +237,14 @@ double amplification(double largest) {
   return factor;
 }
 
-std::string sphere_row(const SpherePair& pair, double factor, const std::string& caption) {
-  return fmt::format("<figure><div class=\"trio\">{}{}{}</div><figcaption>{}</figcaption></figure>\n",
-                     image(pair.table, "Sphere from the table, " + caption),
-                     image(pair.live, "Sphere from the live model, " + caption),
-                     image(scaled(difference(pair), factor), "Amplified difference, " + caption), caption);
+Markup sphere_row(const SpherePair& pair, double factor, const std::string& caption) {
+  return format_markup("<figure><div class=\"trio\">{}{}{}</div><figcaption>{}</figcaption></figure>\n",
+                       image(pair.table, "Sphere from the table, " + caption),
+                       image(pair.live, "Sphere from the live model, " + caption),
+                       image(scaled(difference(pair), factor), "Amplified difference, " + caption), caption);
 }
 
-std::string spheres_section(const ReportSource& source) {
+Markup spheres_section(const ReportSource& source) {
   const auto points = showcase(source.table);
   const int threads = source.settings.threads;
   std::vector<SpherePair> pairs;
@@ -249,22 +257,23 @@ std::string spheres_section(const ReportSource& source) {
     largest = std::max(largest, brightest(difference(pairs.back())));
   }
   const double factor = amplification(largest);
-  std::string figures;
+  Markup figures;
   for (std::size_t k = 0; k < points.size(); ++k)
     figures += sphere_row(pairs[k], factor, describe(source.table, points[k]));
-  return section("spheres", "On a sphere",
-                 fmt::format("Table, live, and their difference times {:g}, under one light and a grey sky; "
-                             "parameters half-way between nodes, where interpolation is weakest. Live: {}.",
-                             factor, live_method(source.table.material, kPictureEstimates)),
-                 "<div class=\"grid\">\n" + figures + "</div>");
+  return section(
+      "spheres", "On a sphere",
+      format_markup("Table, live, and their difference times {:g}, under one light and a grey sky; "
+                    "parameters half-way between nodes, where interpolation is weakest. Live: {}.",
+                    factor, live_method(source.table.material, kPictureEstimates)),
+      in_grid(figures));
 }
 
-std::string energy_section(const ReportSource& source) {
+Markup energy_section(const ReportSource& source) {
   const VerifyReport& report = source.report;
   return section(
       "energy", "Energy and reciprocity",
-      "A surface sends back no more than it receives, and the same whichever way light travels.",
-      "<div class=\"cards\">\n" +
+      {"A surface sends back no more than it receives, and the same whichever way light travels."},
+      Markup{"<div class=\"cards\">\n"} +
           card("energy_max", "largest albedo", report.energy_max, fmt::format("{:.4g}", report.energy_max),
                report.energy_max <= 1 ? "below 1" : "above 1") +
           card("reciprocity_max", "largest asymmetry", report.reciprocity_max,
@@ -273,43 +282,45 @@ std::string energy_section(const ReportSource& source) {
                fmt::format("{:.2g}", report.dirac_error_p99), "absolute") +
           card("rest_error_median", "error below the film, median", report.rest_error.median,
                percent(report.rest_error.median), "p99 " + percent(report.rest_error.p99)) +
-          "\n</div>\n<figure>" +
-          inline_svg(kAlbedoChartWidth, kAlbedoChartHeight, "Albedo over theta_i", albedo_chart(report)) +
-          "</figure>");
+          format_markup(
+              "\n</div>\n<figure>{}</figure>",
+              drawing(kAlbedoChartWidth, kAlbedoChartHeight, "Albedo over theta_i", albedo_chart(report))));
 }
 
-std::string material_rows(const Material& material) {
-  std::string rows;
+Markup material_rows(const Material& material) {
+  Markup rows;
   for (const auto& key : material_keys())
-    rows += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", key, escape_markup(get_text(material, key)));
+    rows += format_markup("<tr><th>{}</th><td>{}</td></tr>\n", key, get_text(material, key));
   return rows;
 }
 
-std::string provenance_section(const ReportSource& source) {
+Markup provenance_section(const ReportSource& source) {
   const auto& info = source.table.info;
   return section(
       "provenance", "Where this comes from",
-      fmt::format("Written by sunbeam {}; the table by sunbeam {}, seed {}, {} estimates. To write this page "
-                  "again:",
-                  kToolVersion, info.at("tool_version"), info.at("seed"), info.at("samples")),
-      fmt::format("<pre id=\"command\">{}</pre>\n<details><summary>Material</summary>\n<div "
-                  "class=\"wide\"><table class=\"keys\">\n<tbody>\n{}</tbody>\n</table></div></details>\n"
-                  "<details><summary>Recipe {}</summary>\n<pre id=\"recipe\">{}</pre></details>",
-                  escape_markup(source.command), material_rows(source.table.material), source.recipe.hash,
-                  escape_markup(source.recipe.text)));
+      format_markup(
+          "Written by sunbeam {}; the table by sunbeam {}, seed {}, {} estimates. To write this page "
+          "again:",
+          kToolVersion, info.at("tool_version"), info.at("seed"), info.at("samples")),
+      format_markup("<pre id=\"command\">{}</pre>\n<details><summary>Material</summary>\n<div "
+                    "class=\"wide\"><table class=\"keys\">\n<tbody>\n{}</tbody>\n</table></div></details>\n"
+                    "<details><summary>Recipe {}</summary>\n<pre id=\"recipe\">{}</pre></details>",
+                    source.command, material_rows(source.table.material), source.recipe.hash,
+                    source.recipe.text));
 }
 
 }  // namespace
 
 std::string html_report(const ReportSource& source) {
-  const std::string body = summary(source) + spheres_section(source) + error_section(source) +
-                           worst_section(source) + slices_section(source) + energy_section(source) +
-                           provenance_section(source);
-  return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
-      "<style>\n{}</style>\n</head>\n<body>\n<main>\n{}</main>\n</body>\n</html>\n",
-      escape_markup(source.table_name + ": verification"), kHtmlStyle, body);
+  const Markup body = summary(source) + spheres_section(source) + error_section(source) +
+                      worst_section(source) + slices_section(source) + energy_section(source) +
+                      provenance_section(source);
+  return format_markup(
+             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+             "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
+             "<style>\n{}</style>\n</head>\n<body>\n<main>\n{}</main>\n</body>\n</html>\n",
+             source.table_name + ": verification", Markup{kHtmlStyle}, body)
+      .text;
 }
 
 }  // namespace sunbeam

@@ -3,12 +3,31 @@
 #include <cstdint>
 
 #include "runtime/tracer/image_io.h"
+#include "sunbeam/detail/text.h"
 
 namespace sunbeam {
 
+namespace {
+
+constexpr std::string_view kReplacement = "\xef\xbf\xbd";
+
+// Plain text stays; anything else is taken byte by byte, and what is no printable ASCII goes.
+std::string plain(std::string_view text) {
+  if (is_plain_text(text)) return std::string(text);
+  std::string result;
+  for (const char c : text)
+    if (is_plain_text({&c, 1}))
+      result += c;
+    else
+      result += kReplacement;
+  return result;
+}
+
+}  // namespace
+
 std::string escape_markup(std::string_view text) {
   std::string result;
-  for (const char c : text) {
+  for (const char c : plain(text)) {
     if (c == '&')
       result += "&amp;";
     else if (c == '<')
@@ -17,6 +36,8 @@ std::string escape_markup(std::string_view text) {
       result += "&gt;";
     else if (c == '"')
       result += "&quot;";
+    else if (c == '\'')
+      result += "&#39;";
     else
       result += c;
   }

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "bake/cli/commands.h"
+#include "bake/cli/json_text.h"
 #include "bake/compare/difference.h"
 #include "bake/compare/false_color.h"
 #include "bake/compare/flip.h"
@@ -130,7 +131,7 @@ int run_compare(const CompareOptions& options) {
   if (!options.png.empty())
     write_file_atomically(options.png, magma_png(map, test.mean.width, test.mean.height));
   if (options.json)
-    fmt::print("{}\n", to_json(options, comparison).dump(2));
+    fmt::print("{}\n", json_text(to_json(options, comparison)));
   else
     print_text(options, comparison);
   if (!options.png.empty())

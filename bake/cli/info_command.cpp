@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/cli/commands.h"
+#include "bake/cli/json_text.h"
 #include "bake/live/estimator.h"
 #include "bake/recipe/recipe.h"
 #include "sunbeam/detail/file.h"
@@ -45,7 +46,11 @@ Json describe(const Table& table, const std::string& path) {
                               {"precision", name_of(array->precision())},
                               {"axes", describe(array->axes())}});
   for (const char* key : {"recipe", "recipe_hash"}) json[key] = table.info.at(key);
-  for (const char* key : {"seed", "samples"}) json[key] = std::stoull(table.info.at(key));
+  for (const char* key : {"seed", "samples"}) {
+    std::uint64_t number = 0;
+    parse_whole_number(table.info.at(key), number);  // the reader of tables has checked it
+    json[key] = number;
+  }
   for (const char* key : {"estimator", "spectrum"}) json[key] = table.info.at(key);
   json["color_space"] = to_string(table.color_space());
   if (table.is_full_spectrum()) {
@@ -92,7 +97,7 @@ int run_info_of_recipe(const InfoOptions& options) {
   json["eval"] = describe(automatic_for_eval(recipe.material));
   json["render"] = describe(automatic_for_render(recipe.material));
   if (options.json) {
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json));
     return 0;
   }
   for (const auto& [key, value] : json.items())
@@ -110,7 +115,7 @@ int run_info(const InfoOptions& options) {
   const Table table = load_table(options.source);
   const Json json = describe(table, options.source);
   if (options.json)
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json));
   else
     print_text(json, table);
   return 0;

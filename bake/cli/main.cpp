@@ -343,11 +343,11 @@ int main(int argc, char** argv) {
     baseline_is_forced();  // refuses a wrong SUNBEAM_KERNELS before any work
     return run(argc, argv);
   } catch (const Error& error) {
-    fmt::print(stderr, "sunbeam: error: {}\n", error.what());
+    fmt::print(stderr, "sunbeam: error: {}\n", printable(error.what()));
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "sunbeam: error: not enough memory\n");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "sunbeam: error: {}\n", error.what());
+    fmt::print(stderr, "sunbeam: error: {}\n", printable(error.what()));
   }
   return 2;
 }

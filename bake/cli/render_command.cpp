@@ -7,6 +7,7 @@
 
 #include "bake/cli/commands.h"
 #include "bake/cli/interrupt.h"
+#include "bake/cli/json_text.h"
 #include "bake/cli/picture.h"
 #include "bake/cli/progress.h"
 #include "bake/scene/materials.h"
@@ -16,6 +17,7 @@
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/file.h"
 #include "sunbeam/detail/hash.h"
+#include "sunbeam/detail/text.h"
 
 namespace sunbeam {
 namespace {
@@ -128,7 +130,7 @@ std::string stats_json(const RenderStats& s, const std::string& estimators) {
   json["peak_rss_mb"] = s.peak_rss_mb;
   json["bad_samples"] = s.bad_samples;
   if (!estimators.empty()) json["estimator"] = estimators;
-  return json.dump(2) + "\n";
+  return json_text(json) + "\n";
 }
 
 RenderSettings read_settings(const RenderOptions& options) {
@@ -176,10 +178,11 @@ int run_render(const RenderOptions& options) {
   require_sound(options);
   RenderSettings settings = read_settings(options);
   Scene scene = load_scene(options.scene, options.overrides);
-  for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", printable(warning));
   if (!options.table.empty()) scene.table = options.table;
   const SceneMaterials materials(scene, options.scene, options.material, estimator_of(options.estimator));
-  for (const std::string& warning : materials.warnings()) fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::string& warning : materials.warnings())
+    fmt::print(stderr, "warning: {}\n", printable(warning));
   for (const auto& path : {options.output, png_beside(options.output)}) require_writable(path);
   if (!options.stats.empty()) require_writable(options.stats);
 
@@ -204,7 +207,8 @@ int run_render(const RenderOptions& options) {
   if (!options.stats.empty())
     write_file_atomically(options.stats, stats_json(result.stats, materials.estimators()));
   if (result.stats.bad_samples > 0)
-    fmt::print(stderr, "warning: {} samples were not finite and count as black\n", result.stats.bad_samples);
+    fmt::print(stderr, "warning: {} samples were not finite, or beyond 1e18, and count as black\n",
+               result.stats.bad_samples);
   if (!materials.estimators().empty()) fmt::print(stderr, "estimator: {}\n", materials.estimators());
   fmt::print(stderr, "{} and {}: {:.2f} s, {:.3g} samples/s\n", options.output, png_beside(options.output),
              result.stats.seconds, result.stats.samples_per_second);

@@ -9,6 +9,7 @@
 
 #include "bake/check/verify.h"
 #include "bake/cli/commands.h"
+#include "bake/cli/json_text.h"
 #include "bake/cli/progress.h"
 #include "bake/recipe/recipe.h"
 #include "bake/report/html_report.h"
@@ -42,7 +43,7 @@ std::string report_json(const VerifyReport& report) {
   for (const auto& [name, value] : figures(report)) json[name] = value;
   json["points"] = report.points.size();
   json["truth"] = report.truth;
-  return json.dump(2) + "\n";
+  return json_text(json) + "\n";
 }
 
 // In single quotes where a shell would read more than a word.

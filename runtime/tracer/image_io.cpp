@@ -15,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <span>
 #include <string_view>
 
 #include "sunbeam/core/error.h"
@@ -136,6 +137,13 @@ void require_pixels(const std::string& path, const Image& image) {
     throw Error(fmt::format("{}: cannot write a picture of {} x {} pixels", path, image.width, image.height));
 }
 
+void require_finite(const std::string& path, std::span<const float> values, const std::string& what) {
+  const auto at = std::ranges::find_if(values, [](float value) { return !std::isfinite(value); });
+  if (at != values.end())
+    throw Error(
+        fmt::format("{}: cannot write the picture: {} holds {}; allowed: finite numbers", path, what, *at));
+}
+
 // Identity up to kKnee, then an exponential approach to 1 with a continuous slope.
 double shoulder(double x) {
   constexpr double kKnee = 0.5;
@@ -185,6 +193,9 @@ void write_exr(const std::string& path, const ExrImage& image) {
     throw Error(fmt::format("{}: the variance has {} x {} pixels; allowed: those of the mean, {} x {}", path,
                             image.variance.width, image.variance.height, image.mean.width,
                             image.mean.height));
+  require_finite(path, image.mean.rgb, "R, G or B");
+  require_finite(path, image.variance.rgb, "the variance");
+  for (const auto& [name, values] : image.layers) require_finite(path, values, "channel " + name);
   std::string bytes;
   try {
     bytes = exr_bytes(image);
@@ -219,6 +230,7 @@ std::string png_bytes(const Image& image, ClipAccount& account) {
 
 ClipAccount write_png(const std::string& path, const Image& image) {
   require_pixels(path, image);
+  require_finite(path, image.rgb, "it");
   ClipAccount account;
   write_file_atomically(path, png_bytes(image, account));
   return account;

@@ -27,6 +27,7 @@ namespace {
 constexpr int kTileSize = 8;              // also the blocks of RenderSettings::noise
 constexpr std::uint32_t kFirstLook = 16;  // samples a pixel before its noise is judged
 constexpr double kPassSeconds = 0.5;      // between two looks at the limits
+constexpr double kMostRadiance = 1e18;    // of a sample: pictures hold its square as a float
 constexpr double kDarkShare = 0.1;        // of the picture's brightness: darker blocks count as that bright
 constexpr int kPixelBits = 28;            // a stream holds the pixel below, the sample above
 
@@ -39,6 +40,11 @@ double cpu_seconds_since(std::clock_t start) {
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
+bool fits_a_picture(const Rgb& c) {
+  return is_finite(c) && std::abs(c.r) <= kMostRadiance && std::abs(c.g) <= kMostRadiance &&
+         std::abs(c.b) <= kMostRadiance;
+}
+
 struct HitSums {
   double count = 0, on_surface = 0;
   Rgb albedo;
@@ -49,7 +55,7 @@ struct HitSums {
     count += 1;
     if (!hit.on_surface) return;
     on_surface += 1;
-    if (is_finite(hit.albedo)) albedo += hit.albedo;
+    if (fits_a_picture(hit.albedo)) albedo += hit.albedo;
     shading_normal = shading_normal + hit.shading_normal;
     geometric_normal = geometric_normal + hit.geometric_normal;
     depth += hit.depth;
@@ -210,7 +216,7 @@ class Renderer {
       if (!hits_.empty()) first = {};
       const Rgb sample =
           tracer_.radiance(camera_.ray(x + dx, y + dy, rng), rng, counts, hits_.empty() ? nullptr : &first);
-      const bool good = is_finite(sample);
+      const bool good = fits_a_picture(sample);
       sums.add(good ? sample : Rgb());
       if (!hits_.empty()) hits.add(first);
       if (!good) ++stats.bad_samples;

@@ -21,7 +21,7 @@ struct RenderStats {
   std::uint64_t samples = 0, rays = 0, vertices = 0;
   double samples_per_second = 0;
   long peak_rss_mb = 0;           // of the process so far
-  std::uint64_t bad_samples = 0;  // not finite; each counts as black
+  std::uint64_t bad_samples = 0;  // not finite, or beyond 1e18; each counts as black
   bool stopped = false;           // by the monitor, before any limit was met
 };
 

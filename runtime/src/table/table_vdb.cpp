@@ -5,8 +5,8 @@
 //
 // The format asks for a UUID in the header (bytes 21 to 56). The library draws it at random; we replace it by
 // a version 8 (custom) UUID made of the hash of all other bytes: equal tables give equal files, and damage is
-// found before the library parses a byte. A file that another tool has written anew has its own UUID and is
-// checked by its content alone.
+// found before anything else is looked at. A file that another tool has written anew has its own UUID. The
+// structure of both is checked before the library parses a byte.
 #include "sunbeam/table_vdb.h"
 
 #include <openvdb/io/Stream.h>
@@ -19,6 +19,8 @@
 #include <utility>
 
 #include "runtime/src/table/table_parts.h"
+#include "runtime/src/vdb/memory_claim.h"
+#include "runtime/src/vdb/vdb_structure.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/file.h"
 #include "sunbeam/detail/hash.h"
@@ -28,7 +30,7 @@ namespace sunbeam {
 inline namespace v1 {
 namespace {
 
-constexpr std::size_t kUuidOffset = 21, kUuidSize = 36, kVersionDigit = 14;
+constexpr std::size_t kVersionDigit = 14;
 
 struct GridSize {
   int x, y, z;
@@ -98,7 +100,7 @@ void copy_voxels(const Grid& grid, NdArray& array) {
   openvdb::tools::copyToDense(grid, dense);
 }
 
-NdArray to_array(const openvdb::GridBase& base) {
+NdArray to_array(const openvdb::GridBase& base, MemoryClaim& memory) {
   const auto* colors = dynamic_cast<const openvdb::Vec3SGrid*>(&base);
   const auto* numbers = dynamic_cast<const openvdb::FloatGrid*>(&base);
   if (!colors && !numbers)
@@ -107,9 +109,11 @@ NdArray to_array(const openvdb::GridBase& base) {
   const auto precision = attributes.find("precision");
   if (precision == attributes.end())
     throw Error("grid '" + base.getName() + "' is not a table array: it has no sunbeam.precision");
-  NdArray array(base.getName(), parse_axes(attributes, base.getName()),
-                precision->second == "half" ? Precision::half_float : Precision::single_float,
-                colors ? 3 : 1);
+  ArrayShape shape(base.getName(), parse_axes(attributes, base.getName()),
+                   precision->second == "half" ? Precision::half_float : Precision::single_float,
+                   colors ? 3 : 1);
+  memory.add(shape.cells() * shape.channels() * sizeof(float));
+  NdArray array(std::move(shape));
   if (colors)
     copy_voxels(*colors, array);
   else
@@ -117,10 +121,12 @@ NdArray to_array(const openvdb::GridBase& base) {
   return array;
 }
 
-std::string uuid_from_content(const std::string& bytes) {
-  std::string without = bytes;
-  without.replace(kUuidOffset, kUuidSize, kUuidSize, '0');
-  std::string uuid = content_hash(without);
+std::string uuid_from_content(std::string_view bytes) {
+  ContentHash hash;
+  hash.add(bytes.substr(0, kVdbUuidOffset));
+  hash.add(std::string(kVdbUuidSize, '0'));
+  hash.add(bytes.substr(kVdbUuidOffset + kVdbUuidSize));
+  std::string uuid = hash.text();
   uuid[12] = '8';  // version 8, variant 1 (RFC 9562)
   uuid[16] = '8';
   for (const std::size_t dash : {8u, 13u, 18u, 23u}) uuid.insert(dash, "-");
@@ -150,6 +156,7 @@ class MemoryBuffer : public std::streambuf {
   }
 };
 
+// Grids go as soon as they are read.
 TableParts read_parts(std::string_view bytes) {
   MemoryBuffer buffer(bytes);
   std::istream in(&buffer);
@@ -157,18 +164,16 @@ TableParts read_parts(std::string_view bytes) {
   openvdb::io::Stream stream(in, /*delayLoad=*/false);
   TableParts parts;
   parts.attributes = string_attributes(*stream.getMetadata());
-  if (!parts.attributes.count("schema_version"))
-    throw Error("it is an OpenVDB file, but not a Sunbeam table");
-  for (const auto& grid : *stream.getGrids()) parts.arrays.push_back(to_array(*grid));
+  MemoryClaim memory("the arrays", bytes.size());
+  for (auto& grid : *stream.getGrids())
+    parts.arrays.push_back(to_array(*std::exchange(grid, nullptr), memory));
   return parts;
 }
 
 void check_identifier(std::string_view bytes, const std::string& name) {
-  constexpr char kMagic[] = {' ', 'B', 'D', 'V', 0, 0, 0, 0};
-  if (bytes.size() < 64 || bytes.substr(0, 8) != std::string_view(kMagic, 8))
-    throw Error(name + ": not an OpenVDB file");
-  const std::string_view uuid = bytes.substr(kUuidOffset, kUuidSize);
-  if (uuid[kVersionDigit] == '8' && !is_hash_of_content(uuid, uuid_from_content(std::string(bytes))))
+  if (!is_vdb(bytes)) throw Error(name + ": not an OpenVDB file");
+  const std::string_view uuid = bytes.substr(kVdbUuidOffset, kVdbUuidSize);
+  if (uuid[kVersionDigit] == '8' && !is_hash_of_content(uuid, uuid_from_content(bytes)))
     throw Error(name + ": the content does not match the file's identifier: it is damaged or cut short");
 }
 
@@ -189,14 +194,15 @@ std::string table_vdb_bytes(const Table& table) {
   stream.setCompression(openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK);
   stream.write(grids, metadata);
   std::string bytes = std::move(out).str();
-  return bytes.replace(kUuidOffset, kUuidSize, uuid_from_content(bytes));
+  return bytes.replace(kVdbUuidOffset, kVdbUuidSize, uuid_from_content(bytes));
 }
 
 Table parse_table_vdb(std::string_view bytes, const std::string& name) {
-  check_identifier(bytes, name);
   openvdb::initialize();
+  check_identifier(bytes, name);
   TableParts parts;
   try {
+    check_vdb_structure(bytes, std::string(kAttributePrefix) + "schema_version");
     parts = read_parts(bytes);
   } catch (const std::exception& error) {
     throw Error(name + ": cannot read the table: " + error.what());

@@ -164,7 +164,7 @@ TableParts read_parts(std::string_view bytes) {
   openvdb::io::Stream stream(in, /*delayLoad=*/false);
   TableParts parts;
   parts.attributes = string_attributes(*stream.getMetadata());
-  MemoryClaim memory("the arrays", bytes.size());
+  MemoryClaim memory("reading the arrays", bytes.size());
   for (auto& grid : *stream.getGrids())
     parts.arrays.push_back(to_array(*std::exchange(grid, nullptr), memory));
   return parts;
@@ -207,7 +207,7 @@ Table parse_table_vdb(std::string_view bytes, const std::string& name) {
   } catch (const std::exception& error) {
     throw Error(name + ": cannot read the table: " + error.what());
   }
-  return from_parts(parts, name);
+  return from_parts(std::move(parts), name);
 }
 
 Table load_table_vdb(const std::string& path) { return parse_table_vdb(read_file(path), path); }

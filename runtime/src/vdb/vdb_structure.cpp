@@ -79,7 +79,7 @@ class GridWalk {
     try {
       walk_descriptor();
       walk_data();
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
       throw Error("grid " + quoted(name) + ": " + error.what());
     }
   }
@@ -131,7 +131,7 @@ bool is_vdb(std::string_view bytes) {
 
 void check_vdb_structure(std::string_view bytes, const std::string& marker) {
   ByteCursor in(bytes);
-  MemoryClaim memory("the grids", bytes.size());
+  MemoryClaim memory("reading the grids", bytes.size());
   const bool has_offsets = walk_header(in);
   const VdbMetadata metadata = check_vdb_metadata(in);
   if (!metadata.names.count(marker)) throw Error("it is an OpenVDB file, but not a Sunbeam table");

@@ -1,13 +1,13 @@
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <optional>
 
 #include "bake/base/version.h"
 #include "bake/blocks/journal.h"
 #include "bake/cli/commands.h"
+#include "bake/cli/console.h"
 #include "bake/cli/finish.h"
 #include "bake/cli/interrupt.h"
+#include "bake/cli/separate_files.h"
 #include "bake/dense/lobes.h"
 #include "bake/jobs/bake.h"
 #include "bake/jobs/preview.h"
@@ -24,14 +24,14 @@ constexpr int kInterrupted = 130;  // as a shell reports Ctrl-C
 
 void announce(const Recipe& recipe, Encoding encoding) {
   if (encoding == Encoding::factored) {
-    fmt::print(stderr, "{}: factored, {} cosines, {} base IORs, {} absorptions, values by shared walks\n",
-               recipe.name, recipe.table.angles, recipe.grid[1].size(), recipe.grid[2].size());
+    message("{}: factored, {} cosines, {} base IORs, {} absorptions, values by shared walks", recipe.name,
+            recipe.table.angles, recipe.grid[1].size(), recipe.grid[2].size());
     return;
   }
-  fmt::print(stderr, "{}: dense, {} parameter nodes, {} x {} cosines, {} azimuths, values by {}\n",
-             recipe.name, recipe.grid[0].size() * recipe.grid[1].size() * recipe.grid[2].size(),
-             recipe.table.angles, recipe.table.angles, recipe.table.azimuths,
-             is_solved(recipe) ? "adding-doubling" : name_of(recipe.accuracy.estimator));
+  message("{}: dense, {} parameter nodes, {} x {} cosines, {} azimuths, values by {}", recipe.name,
+          recipe.grid[0].size() * recipe.grid[1].size() * recipe.grid[2].size(), recipe.table.angles,
+          recipe.table.angles, recipe.table.azimuths,
+          is_solved(recipe) ? "adding-doubling" : name_of(recipe.accuracy.estimator));
 }
 
 class BakeCommand {
@@ -40,6 +40,7 @@ class BakeCommand {
       : options_(options),
         form_(progress_form(options.progress)),
         recipe_(load_recipe(options.recipe, options.overrides)) {
+    require_separate({options.recipe}, {options.output});
     require_wide_lobes(recipe_);
     if (options.preview) recipe_ = preview_of(recipe_);
     for (const Encoding encoding : encodings_of(recipe_)) require_reasonable_size(recipe_, encoding);
@@ -58,24 +59,23 @@ class BakeCommand {
   std::unique_ptr<Journal> journal_of(Encoding encoding) const {
     auto journal = Journal::open(work_->journal_path(name_of(encoding)), identity_of(encoding));
     if (journal->damaged_bytes() > 0)
-      fmt::print(stderr, "{}: its last {} bytes are no whole block and are baked again\n", journal->path(),
-                 journal->damaged_bytes());
+      message("{}: its last {} bytes are no whole block and are baked again", journal->path(),
+              journal->damaged_bytes());
     return journal;
   }
 
   // False if interrupted.
   bool run_blocks(BakeJob& job, const TaskRange& range, Journal& journal) {
     const Interrupt interrupt;
-    if (journal.blocks() > 0)
-      fmt::print(stderr, "resumed with {} of {} blocks\n", journal.blocks(), range.size());
+    if (journal.blocks() > 0) message("resumed with {} of {} blocks", journal.blocks(), range.size());
     Progress progress("bake", "blocks", static_cast<double>(range.size()), form_);
     TaskSettings settings{options_.threads, {}, [&] { return interrupt.requested(); }};
     settings.on_progress = [&](const BakeProgress& p) { progress(p); };
     const bool done = run_tasks(job, range, journal, settings);
     journal.sync();
     if (!done)
-      fmt::print(stderr, "interrupted: {} of {} blocks are in {}; continue with --resume\n", journal.blocks(),
-                 range.size(), work_->path());
+      message("interrupted: {} of {} blocks are in {}; continue with --resume", journal.blocks(),
+              range.size(), work_->path());
     return done;
   }
 
@@ -108,9 +108,9 @@ class BakeCommand {
       if (!next) return kInterrupted;
       const bool good = within_tolerance(next->report, settings);
       if (encodings.size() > 1)
-        fmt::print(stderr, "encoding auto: {} {} the tolerances (median {:g}, p99 {:g})\n", name_of(encoding),
-                   good ? "is the smallest that meets" : "misses", settings.tolerance_median,
-                   settings.tolerance_p99);
+        message("encoding auto: {} {} the tolerances (median {:g}, p99 {:g})", name_of(encoding),
+                good ? "is the smallest that meets" : "misses", settings.tolerance_median,
+                settings.tolerance_p99);
       if (!best || worst_share(next->report, settings) < worst_share(best->report, settings))
         best = std::move(next);
       if (good || options_.preview) break;
@@ -122,6 +122,7 @@ class BakeCommand {
 
   // Whether the output is this part and whole.
   bool is_finished(const BakeIdentity& identity, const TaskRange& range) const {
+    if (!std::filesystem::is_regular_file(options_.output)) return false;
     try {
       const auto part = Journal::read(options_.output);
       return part->identity().text() == identity.text() && part->blocks() == range.size() &&
@@ -137,18 +138,16 @@ class BakeCommand {
     const auto job = make_job(recipe_, encoding, options_.seed);
     const TaskRange range = shard_of(*job, options_.shard - 1, options_.shards);
     if (options_.resume && is_finished(identity_of(encoding), range)) {
-      fmt::print(stderr, "{}: is there already\n", options_.output);
+      message("{}: is there already", options_.output);
       work_->remove();
       return 0;
     }
     const auto journal = journal_of(encoding);
     if (!run_blocks(*job, range, *journal)) return kInterrupted;
-    std::error_code error;
-    std::filesystem::rename(journal->path(), options_.output, error);
-    if (error) throw Error(options_.output + ": cannot write: " + error.message());
+    move_into_place(journal->path(), options_.output);
     work_->remove();
-    fmt::print(stderr, "{}: part {} of {}, {} blocks; join the parts with sunbeam merge\n", options_.output,
-               options_.shard, options_.shards, range.size());
+    message("{}: part {} of {}, {} blocks; join the parts with sunbeam merge", options_.output,
+            options_.shard, options_.shards, range.size());
     return 0;
   }
 

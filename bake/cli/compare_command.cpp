@@ -4,7 +4,9 @@
 #include <numeric>
 
 #include "bake/cli/commands.h"
+#include "bake/cli/console.h"
 #include "bake/cli/json_text.h"
+#include "bake/cli/separate_files.h"
 #include "bake/compare/difference.h"
 #include "bake/compare/false_color.h"
 #include "bake/compare/flip.h"
@@ -70,8 +72,8 @@ Json to_json(const CompareOptions& options, const Comparison& comparison) {
 
 void print_noise(const NoiseTest& noise) {
   const auto print_share = [](const std::string& name, const ZCount& z) {
-    fmt::print("{:<20}{:.4g} % of {} values beyond {:g} sigma; noise alone: {:.2g} %\n", name,
-               100 * z.share(), z.tested, kZLimit, 100 * expected_share_beyond());
+    out("{:<20}{:.4g} % of {} values beyond {:g} sigma; noise alone: {:.2g} %\n", name, 100 * z.share(),
+        z.tested, kZLimit, 100 * expected_share_beyond());
   };
   print_share("pixels", noise.pixels);
   print_share(fmt::format("blocks of {0} x {0}", kBlockSize), noise.blocks);
@@ -79,16 +81,14 @@ void print_noise(const NoiseTest& noise) {
 
 void print_text(const CompareOptions& options, const Comparison& comparison) {
   const Difference& d = comparison.difference;
-  fmt::print("{:<20}{:.6g}\n", "rmse", d.rmse);
-  fmt::print("{:<20}{:.6g}   mean of (A - B)^2 / (B^2 + {:g})\n", "relmse", d.rel_mse, kRelativeMseEpsilon);
-  fmt::print("{:<20}{:.6g}   mean, {:g} pixels a degree\n", "flip", comparison.flip,
-             options.pixels_per_degree);
+  out("{:<20}{:.6g}\n", "rmse", d.rmse);
+  out("{:<20}{:.6g}   mean of (A - B)^2 / (B^2 + {:g})\n", "relmse", d.rel_mse, kRelativeMseEpsilon);
+  out("{:<20}{:.6g}   mean, {:g} pixels a degree\n", "flip", comparison.flip, options.pixels_per_degree);
   for (int channel = 0; channel < 3; ++channel) {
-    fmt::print("{:<20}{:.6g}", fmt::format("bias {}", "RGB"[channel]), d.bias[channel]);
+    out("{:<20}{:.6g}", fmt::format("bias {}", "RGB"[channel]), d.bias[channel]);
     if (d.noise)
-      fmt::print(" +- {:.3g} (95 %), {:.2f} sigma", kZ95 * d.noise->bias_error[channel],
-                 d.noise->bias_z[channel]);
-    fmt::print("   mean of B {:.6g}\n", d.reference_mean[channel]);
+      out(" +- {:.3g} (95 %), {:.2f} sigma", kZ95 * d.noise->bias_error[channel], d.noise->bias_z[channel]);
+    out("   mean of B {:.6g}\n", d.reference_mean[channel]);
   }
   if (d.noise) print_noise(*d.noise);
 }
@@ -109,12 +109,13 @@ void note_missing_variance(const CompareOptions& options, const ExrImage& test, 
   if (path.empty()) return;
   const std::string what = path + ": no channels variance.R, variance.G and variance.B";
   if (options.max_bias_z) throw Error(what + ", which --max-bias-z needs");
-  fmt::print(stderr, "note: {}; hence no confidence interval and no test against noise\n", what);
+  message("note: {}; hence no confidence interval and no test against noise", what);
 }
 
 }  // namespace
 
 int run_compare(const CompareOptions& options) {
+  require_separate({options.test, options.reference}, {options.png});
   check_options(options);
   const ExrImage test = read_rendering(options.test), reference = read_rendering(options.reference);
   Comparison comparison;
@@ -131,16 +132,15 @@ int run_compare(const CompareOptions& options) {
   if (!options.png.empty())
     write_file_atomically(options.png, magma_png(map, test.mean.width, test.mean.height));
   if (options.json)
-    fmt::print("{}\n", json_text(to_json(options, comparison)));
+    out("{}\n", json_text(to_json(options, comparison)));
   else
     print_text(options, comparison);
-  if (!options.png.empty())
-    fmt::print(stderr, "{}: FLIP of every pixel; black 0, pale yellow 1\n", options.png);
+  if (!options.png.empty()) message("{}: FLIP of every pixel; black 0, pale yellow 1", options.png);
 
   int exit_code = 0;
   for (const Limit& limit : limits_of(options, comparison))
     if (limit.is_exceeded()) {
-      fmt::print(stderr, "FAIL: {:.6g} is above {} {:g}\n", limit.value, limit.option, *limit.most);
+      message("FAIL: {:.6g} is above {} {:g}", limit.value, limit.option, *limit.most);
       exit_code = 1;
     }
   return exit_code;

@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cerrno>
+#include <cstring>
 #include <iostream>
-#include <sstream>
 
 #include "bake/check/eval_csv.h"
 #include "bake/cli/commands.h"
+#include "bake/cli/console.h"
+#include "bake/cli/separate_files.h"
 #include "bake/recipe/recipe.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/file.h"
@@ -35,26 +38,30 @@ PointsReport evaluate(const EvalOptions& options, const Csv& csv) {
 
 Csv read_points(const std::string& path) {
   if (path != "-") return parse_csv(read_text(path), path);
-  std::ostringstream text;
-  text << std::cin.rdbuf();
-  return parse_csv(text.view(), "standard input");
+  const std::string name = "standard input";
+  return parse_csv(utf8_text(read_stream(std::cin, name), name), name);
 }
 
 // What made the values, and which columns had no part in it.
 void print_report(const PointsReport& report, Quantity quantity) {
   if (!report.estimators.empty() && quantity != Quantity::film)
-    fmt::print(stderr, "estimator: {}\n", fmt::join(report.estimators, ", "));
-  if (!report.unused_columns.empty())
-    fmt::print(stderr, "carried through: {}\n", fmt::join(report.unused_columns, ", "));
+    message("estimator: {}", fmt::join(report.estimators, ", "));
+  if (!report.unused_columns.empty()) message("carried through: {}", fmt::join(report.unused_columns, ", "));
 }
 
 }  // namespace
 
 int run_eval(const EvalOptions& options) {
+  require_separate({options.source, options.points}, {});
   std::ios::sync_with_stdio(false);
-  const PointsReport report = evaluate(options, read_points(options.points));
-  if (!std::cout.flush()) throw Error("standard output: cannot write");
-  print_report(report, parse_quantity(options.quantity));
+  std::cout.exceptions(std::ios::badbit);  // ends the work when nobody reads it
+  try {
+    const PointsReport report = evaluate(options, read_points(options.points));
+    std::cout.flush();
+    print_report(report, parse_quantity(options.quantity));
+  } catch (const std::ios::failure&) {
+    throw Error(std::string("standard output: cannot write: ") + std::strerror(errno));
+  }
   return 0;
 }
 

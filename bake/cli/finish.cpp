@@ -4,28 +4,31 @@
 
 #include <filesystem>
 
+#include "bake/cli/console.h"
+
 namespace sunbeam {
 
 VerifyReport measure_error(FinishedBake& table, int points, int threads, ProgressForm form) {
   VerifyReport report = table.measure_error(points, threads, Progress("verify", "points", points, form));
-  fmt::print(stderr, "error median {:.3g} p99 {:.3g} (noise floor {:.3g}), measured at {} points by {}\n",
-             report.error.median, report.error.p99, report.noise_floor.median, points, report.truth);
+  message("error median {:.3g} p99 {:.3g} (noise floor {:.3g}), measured at {} points by {}",
+          report.error.median, report.error.p99, report.noise_floor.median, points, report.truth);
   return report;
 }
 
 void save(const FinishedBake& table, const std::string& path) {
   table.save(path);
   const auto& info = table.info();
-  fmt::print(stderr, "{}: {}, {} bytes, {} walks of {}\n", path, info.at("encoding"),
-             std::filesystem::file_size(path), info.at("samples"), info.at("estimator"));
+  std::error_code no_file;  // but a device or a FIFO
+  const auto bytes = std::filesystem::file_size(path, no_file);
+  message("{}: {}{}, {} walks of {}", path, info.at("encoding"),
+          no_file ? "" : fmt::format(", {} bytes", bytes), info.at("samples"), info.at("estimator"));
 }
 
 int verdict(const std::string& path, const Recipe& recipe, const VerifyReport& report,
             const std::string& advice) {
   const VerifySettings settings = verify_settings_of(recipe);
   if (within_tolerance(report, settings)) return 0;
-  fmt::print(stderr, "{}: misses the recipe's tolerances: {}{}\n", path, missed_limits(report, settings),
-             advice);
+  message("{}: misses the recipe's tolerances: {}{}", path, missed_limits(report, settings), advice);
   return 1;
 }
 

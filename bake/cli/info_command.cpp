@@ -4,7 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/cli/commands.h"
+#include "bake/cli/console.h"
 #include "bake/cli/json_text.h"
+#include "bake/cli/separate_files.h"
 #include "bake/live/estimator.h"
 #include "bake/recipe/recipe.h"
 #include "sunbeam/detail/file.h"
@@ -39,7 +41,8 @@ Json describe(const Table& table, const std::string& path) {
   Json json;
   json["schema_version"] = table.schema_version;
   json["encoding"] = table.info.at("encoding");
-  json["bytes"] = std::filesystem::file_size(path);
+  std::error_code no_file;  // but a FIFO
+  if (const auto bytes = std::filesystem::file_size(path, no_file); !no_file) json["bytes"] = bytes;
   json["axes"] = describe(axes_of(table));
   for (const NdArray* array : table.arrays())
     json["arrays"].push_back({{"name", array->name()},
@@ -68,20 +71,19 @@ Json describe(const Table& table, const std::string& path) {
 void print_text(const Json& json, const Table& table) {
   for (const auto& [key, value] : json.items()) {
     if (key == "axes" || key == "arrays" || key == "recipe" || key == "error") continue;
-    fmt::print("{:<16}{}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+    out("{:<16}{}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
   }
   for (const Axis& axis : axes_of(table))
-    fmt::print("axis            {:<18} {:>4} nodes, {:g} to {:g} {}\n", axis.name, axis.size(),
-               axis.nodes.front(), axis.nodes.back(), axis.unit == "1" ? "" : axis.unit);
+    out("axis            {:<18} {:>4} nodes, {:g} to {:g} {}\n", axis.name, axis.size(), axis.nodes.front(),
+        axis.nodes.back(), axis.unit == "1" ? "" : axis.unit);
   for (const NdArray* array : table.arrays()) {
-    fmt::print("array           {:<18} {}:", array->name(), name_of(array->precision()));
-    for (const Axis& axis : array->axes()) fmt::print(" {} {}", axis.name, axis.size());
-    fmt::print("\n");
+    out("array           {:<18} {}:", array->name(), name_of(array->precision()));
+    for (const Axis& axis : array->axes()) out(" {} {}", axis.name, axis.size());
+    out("\n");
   }
   for (const auto& [key, value] : json["error"].items())
-    fmt::print("error           {:<18} {}\n", key,
-               value.is_string() ? value.get<std::string>() : value.dump());
-  fmt::print("recipe\n{}\n", json["recipe"].get<std::string>());
+    out("error           {:<18} {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+  out("recipe\n{}\n", json["recipe"].get<std::string>());
 }
 
 Json describe(const EstimatorChoice& choice) {
@@ -97,25 +99,26 @@ int run_info_of_recipe(const InfoOptions& options) {
   json["eval"] = describe(automatic_for_eval(recipe.material));
   json["render"] = describe(automatic_for_render(recipe.material));
   if (options.json) {
-    fmt::print("{}\n", json_text(json));
+    out("{}\n", json_text(json));
     return 0;
   }
   for (const auto& [key, value] : json.items())
-    fmt::print("{:<16}{}\n", key,
-               value.is_string() ? value.get<std::string>()
-                                 : fmt::format("{}: {}", value["estimator"].get<std::string>(),
-                                               value["reason"].get<std::string>()));
+    out("{:<16}{}\n", key,
+        value.is_string() ? value.get<std::string>()
+                          : fmt::format("{}: {}", value["estimator"].get<std::string>(),
+                                        value["reason"].get<std::string>()));
   return 0;
 }
 
 }  // namespace
 
 int run_info(const InfoOptions& options) {
+  require_separate({options.source}, {});
   if (extension(options.source) == ".toml") return run_info_of_recipe(options);
   const Table table = load_table(options.source);
   const Json json = describe(table, options.source);
   if (options.json)
-    fmt::print("{}\n", json_text(json));
+    out("{}\n", json_text(json));
   else
     print_text(json, table);
   return 0;

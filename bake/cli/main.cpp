@@ -4,48 +4,28 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <csignal>
 #include <limits>
 #include <new>
+#include <sstream>
 #include <tuple>
 
 #include "bake/base/version.h"
 #include "bake/cli/commands.h"
+#include "bake/cli/console.h"
+#include "bake/cli/validators.h"
 #include "runtime/config/config.h"
 #include "runtime/tracer/scales.h"
 #include "sunbeam/core/error.h"
+#include "sunbeam/core/read_limit.h"
+#include "sunbeam/detail/file.h"
 #include "sunbeam/detail/processor.h"
 #include "sunbeam/detail/text.h"
 
 namespace {
 
 using namespace sunbeam;
-
-// CLI11 alone would let "-1" wrap round to a large unsigned number.
-CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
-  return CLI::Validator(
-      [low, high](std::string& text) {
-        std::uint64_t value = 0;
-        const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-        const bool parsed = result.ec == std::errc() && result.ptr == text.data() + text.size();
-        if (parsed && value >= low && value <= high) return std::string();
-        return fmt::format("found '{}'; allowed: a whole number, {} to {}", text, low, high);
-      },
-      "");
-}
-
-// CLI11's own checks would let "nan" pass.
-CLI::Validator number(double low, double high) {
-  return CLI::Validator(
-      [low, high](std::string& text) {
-        double value = 0;
-        if (parse_number(text, value) && value >= low && value <= high) return std::string();
-        return fmt::format("found '{}'; allowed: a number, {:g} to {:g}", text, low, high);
-      },
-      "");
-}
 
 constexpr std::uint64_t kMostThreads = 1024;
 constexpr std::uint64_t kMostSamples = 1000000000000000;
@@ -74,6 +54,14 @@ void add_progress(CLI::App* command, std::string& form) {
       ->check(CLI::IsMember({"text", "json"}));
 }
 
+void add_max_memory(CLI::App* command) {
+  command
+      ->add_option_function<double>(
+          "--max-memory", [](const double& gb) { set_read_limit(static_cast<std::uint64_t>(gb * 1e9)); },
+          "GB that the contents of a file may take; default: 1 and four times the file")
+      ->check(number(1, 1e6));
+}
+
 // "K/N" with 1 <= K <= N.
 std::pair<int, int> shard_of_text(const std::string& text) {
   constexpr int kMostShards = 100000;
@@ -91,8 +79,10 @@ void add_bake(CLI::App& app, BakeOptions& o, int& exit_code) {
   CLI::App* command =
       add_command(app, "bake", "Bake a recipe into a table (.exr or .vdb)",
                   "sunbeam bake tables/recipes/sunbeam.toml -o skin.exr --set material.albedo=0.5");
-  command->add_option("recipe", o.recipe, "Recipe (TOML)")->required();
-  command->add_option("-o,--output", o.output, "Table to write; the extension chooses the form")->required();
+  command->add_option("recipe", o.recipe, "Recipe (TOML)")->required()->check(file_path());
+  command->add_option("-o,--output", o.output, "Table to write; the extension chooses the form")
+      ->required()
+      ->check(file_path());
   add_overrides(command, o.overrides);
   add_threads(command, o.threads);
   command->add_option("--seed", o.seed, "Random seed")->check(whole_number(0, kAnySeed));
@@ -104,6 +94,7 @@ void add_bake(CLI::App& app, BakeOptions& o, int& exit_code) {
           "K/N: bake the K-th of N parts, for sunbeam merge")
       ->excludes(preview);
   add_progress(command, o.progress);
+  add_max_memory(command);
   command->callback([&] { exit_code = run_bake(o); });
 }
 
@@ -112,18 +103,24 @@ void add_merge(CLI::App& app, MergeOptions& o, int& exit_code) {
       add_command(app, "merge", "Join the parts of a bake into a table (.exr or .vdb)",
                   "sunbeam bake RECIPE --shard 1/2 -o 1.part; sunbeam bake RECIPE --shard 2/2 "
                   "-o 2.part; sunbeam merge 1.part 2.part -o skin.exr");
-  command->add_option("parts", o.parts, "Parts, in any order")->required();
-  command->add_option("-o,--output", o.output, "Table to write; the extension chooses the form")->required();
+  command->add_option("parts", o.parts, "Parts, in any order")->required()->check(file_path());
+  command->add_option("-o,--output", o.output, "Table to write; the extension chooses the form")
+      ->required()
+      ->check(file_path());
   add_threads(command, o.threads);
   add_progress(command, o.progress);
+  add_max_memory(command);
   command->callback([&] { exit_code = run_merge(o); });
 }
 
 void add_info(CLI::App& app, InfoOptions& o, int& exit_code) {
   CLI::App* command = add_command(app, "info", "Show what a table holds, or how a recipe is evaluated live",
                                   "sunbeam info skin.exr --json");
-  command->add_option("source", o.source, "Table (.exr, .vdb) or recipe (.toml)")->required();
+  command->add_option("source", o.source, "Table (.exr, .vdb) or recipe (.toml)")
+      ->required()
+      ->check(file_path());
   command->add_flag("--json", o.json, "As JSON");
+  add_max_memory(command);
   command->callback([&] { exit_code = run_info(o); });
 }
 
@@ -132,8 +129,12 @@ void add_eval(CLI::App& app, EvalOptions& o, int& exit_code) {
       add_command(app, "eval", "Evaluate a recipe (live) or a table at the rows of a CSV file",
                   "echo 'theta_i_deg,theta_o_deg,phi_deg\n  30,30,180' | "
                   "sunbeam eval tables/recipes/sunbeam.toml --points -");
-  command->add_option("source", o.source, "Recipe (.toml) or table (.exr, .vdb)")->required();
-  command->add_option("--points", o.points, "CSV file, or - for standard input")->required();
+  command->add_option("source", o.source, "Recipe (.toml) or table (.exr, .vdb)")
+      ->required()
+      ->check(file_path());
+  command->add_option("--points", o.points, "CSV file, or - for standard input")
+      ->required()
+      ->check(file_path());
   command->add_option("--quantity", o.quantity, "What to evaluate")
       ->check(CLI::IsMember({"brdf", "albedo", "film"}));
   command
@@ -146,6 +147,7 @@ void add_eval(CLI::App& app, EvalOptions& o, int& exit_code) {
                    "Estimates a row of PFMC and of pdf; one of PFMC's is the mean of 16 walks")
       ->check(whole_number(2, kMostSamples));
   command->add_option("--seed", o.seed, "Random seed; row k uses stream k")->check(whole_number(0, kAnySeed));
+  add_max_memory(command);
   command->callback([&] { exit_code = run_eval(o); });
 }
 
@@ -153,15 +155,17 @@ void add_verify(CLI::App& app, VerifyOptions& o, int& exit_code) {
   CLI::App* command =
       add_command(app, "verify", "Hold a table against live evaluation at random held-out points",
                   "sunbeam verify skin.exr --json report.json --html report.html");
-  command->add_option("table", o.table, "Table (.exr or .vdb)")->required();
+  command->add_option("table", o.table, "Table (.exr or .vdb)")->required()->check(file_path());
   command->add_option("--points", o.points, "Random points")->check(whole_number(1, 100000000));
   command->add_option("--truth", o.truth, "What to hold it against")
       ->check(CLI::IsMember({"pfmc", "bidirectional", "exact"}));
-  command->add_option("--json", o.json, "Write the figures to this file");
-  command->add_option("--html", o.html, "Write a report with charts and pictures to this file (.html)");
+  command->add_option("--json", o.json, "Write the figures to this file")->check(file_path());
+  command->add_option("--html", o.html, "Write a report with charts and pictures to this file (.html)")
+      ->check(file_path());
   add_threads(command, o.threads);
   command->add_option("--seed", o.seed, "Random seed; point k uses stream k")
       ->check(whole_number(0, kAnySeed));
+  add_max_memory(command);
   command->callback([&] { exit_code = run_verify(o); });
 }
 
@@ -169,16 +173,22 @@ void add_plot(CLI::App& app, PlotOptions& o, int& exit_code) {
   CLI::App* command =
       add_command(app, "plot", "Draw one picture of a table",
                   "sunbeam plot skin.exr --what sphere -o sphere.png --film-thickness-nm 350");
-  command->add_option("table", o.table, "Table (.exr or .vdb)")->required();
+  command->add_option("table", o.table, "Table (.exr or .vdb)")->required()->check(file_path());
   command->add_option("-o,--output", o.output, "Picture to write: .png for slice and sphere, .svg for charts")
-      ->required();
+      ->required()
+      ->check(file_path());
   command->add_option("--what", o.what, "What to draw")
       ->required()
       ->check(CLI::IsMember({"polar", "slice", "sphere", "reflectance"}));
-  command->add_option("--film-thickness-nm", o.film_thickness_nm, "Film thickness; default: the table's own");
-  command->add_option("--base-ior", o.base_ior, "Index below the film; default: the table's own");
-  command->add_option("--absorption-per-nm", o.absorption_per_nm, "Absorption; default: the table's own");
-  command->add_option("--theta-i", o.theta_i_deg, "Angle of the light, degrees, for polar; default: 30");
+  command->add_option("--film-thickness-nm", o.film_thickness_nm, "Film thickness; default: the table's own")
+      ->check(any_number());
+  command->add_option("--base-ior", o.base_ior, "Index below the film; default: the table's own")
+      ->check(any_number());
+  command->add_option("--absorption-per-nm", o.absorption_per_nm, "Absorption; default: the table's own")
+      ->check(any_number());
+  command->add_option("--theta-i", o.theta_i_deg, "Angle of the light, degrees, for polar; default: 30")
+      ->check(any_number());
+  add_max_memory(command);
   command->callback([&] { exit_code = run_plot(o); });
 }
 
@@ -186,37 +196,43 @@ void add_render(CLI::App& app, RenderOptions& o, int& exit_code) {
   CLI::App* command =
       add_command(app, "render", "Render a scene with a table, with the live model, or diffuse",
                   "sunbeam render tables/scenes/sphere.toml -o sphere.exr --size 960x540 --spp 64");
-  command->add_option("scene", o.scene, "Scene (TOML)")->required();
-  command->add_option("-o,--output", o.output, "Image to write (.exr); a .png goes beside it")->required();
+  command->add_option("scene", o.scene, "Scene (TOML)")->required()->check(file_path());
+  command->add_option("-o,--output", o.output, "Image to write (.exr); a .png goes beside it")
+      ->required()
+      ->check(file_path());
   command->add_option("--material", o.material, "Skin material")
       ->check(CLI::IsMember({"table", "live", "diffuse"}));
   command->add_option("--estimator", o.estimator, "Evaluator of --material live; auto: exact where it can")
       ->check(CLI::IsMember({"auto", "pfmc", "bidirectional", "exact"}));
-  command->add_option("--table", o.table, "Table to use in place of the scene's own");
+  command->add_option("--table", o.table, "Table to use in place of the scene's own")->check(file_path());
   command->add_option("--size", o.size, "WIDTHxHEIGHT in pixels");
   command->add_option("--spp", o.samples_per_pixel, "Samples per pixel; the most with --time or --noise")
       ->check(whole_number(1, 1 << 24));
   command->add_option("--time", o.time, "Stop after this long: 10s, 500ms, 2m, 1h");
   command->add_option("--noise", o.noise, "Stop where the relative standard error is this small: 0.02")
-      ->check(CLI::Range(1e-6, 1.0));
+      ->check(number(1e-6, 1));
   command->add_option("--crop", o.crop, "X0,Y0,X1,Y1: render only these pixels, x from X0 to X1 - 1");
-  command->add_flag("--watch{2}", o.watch_seconds,
-                    "Write the picture so far every 2 s, --watch=5: every 5 s");
+  command->add_flag("--watch{2}", o.watch_seconds, "Write the picture so far every 2 s, --watch=5: every 5 s")
+      ->check(number(0.01, 1e6));
   command->add_flag("--aovs", o.aovs, "Add layers: albedo, normals, depth, film thickness");
-  command->add_option("--resume", o.resume, "Picture of the same scene to go on from");
+  command->add_option("--resume", o.resume, "Picture of the same scene to go on from")->check(file_path());
   add_overrides(command, o.overrides);
   add_threads(command, o.threads);
   command->add_option("--seed", o.seed, "Random seed")->check(whole_number(0, kAnySeed));
-  command->add_option("--stats", o.stats, "Write timing and counts to this JSON file");
+  command->add_option("--stats", o.stats, "Write timing and counts to this JSON file")->check(file_path());
+  add_max_memory(command);
   command->callback([&] { exit_code = run_render(o); });
 }
 
 void add_compare(CLI::App& app, CompareOptions& o, int& exit_code) {
   CLI::App* command = add_command(app, "compare", "Measure how far a rendered image is from a reference",
                                   "sunbeam compare table.exr live.exr --max-bias-z 4 --png flip.png");
-  command->add_option("test", o.test, "Image to judge (.exr)")->required();
-  command->add_option("reference", o.reference, "Image to hold it against (.exr)")->required();
-  command->add_option("--png", o.png, "Write FLIP of every pixel to this picture (.png): black 0, yellow 1");
+  command->add_option("test", o.test, "Image to judge (.exr)")->required()->check(file_path());
+  command->add_option("reference", o.reference, "Image to hold it against (.exr)")
+      ->required()
+      ->check(file_path());
+  command->add_option("--png", o.png, "Write FLIP of every pixel to this picture (.png): black 0, yellow 1")
+      ->check(file_path());
   command->add_flag("--json", o.json, "As JSON");
   command->add_option("--pixels-per-degree", o.pixels_per_degree, "Of the observer of FLIP; default: 67")
       ->check(number(1, kMostPixelsPerDegree));
@@ -228,6 +244,7 @@ void add_compare(CLI::App& app, CompareOptions& o, int& exit_code) {
   add_limit("--max-flip", o.max_flip, "Exit with 1 if mean FLIP is above this");
   add_limit("--max-bias", o.max_bias, "Exit with 1 if the mean difference of a channel is above this");
   add_limit("--max-bias-z", o.max_bias_z, "The same in standard errors; needs the variance of both");
+  add_max_memory(command);
   command->callback([&] { exit_code = run_compare(o); });
 }
 
@@ -235,15 +252,18 @@ void add_texture(CLI::App& app, TextureOptions& o, int& exit_code) {
   CLI::App* command = add_command(app, "texture", "Write scales as a height map that tiles without a seam",
                                   "sunbeam texture -o scales.exr --pattern voronoi --columns 24 --rows 28");
   command->add_option("-o,--output", o.output, "Heights to write: .exr (float) or .png (16 bits)")
-      ->required();
+      ->required()
+      ->check(file_path());
   command->add_option("--pattern", o.pattern, "Grid of the scales; snake, snake_head: over a whole girth")
       ->check(CLI::IsMember({"hexagonal", "voronoi", "snake", "snake_head"}));
   command->add_option("--columns", o.columns, "Scales across the tile")
       ->check(whole_number(1, kMaxScaleColumns));
   command->add_option("--rows", o.rows, "Rows of scales in the tile, an even number")
       ->check(whole_number(2, kMaxScaleColumns));
-  command->add_option("--edge", o.edge, "Width of a scale's slope in scale widths; 0.5 is a dome");
-  command->add_option("--jitter", o.jitter, "Disorder of voronoi scales: 0 is the hexagonal grid");
+  command->add_option("--edge", o.edge, "Width of a scale's slope in scale widths; 0.5 is a dome")
+      ->check(any_number());
+  command->add_option("--jitter", o.jitter, "Disorder of voronoi scales: 0 is the hexagonal grid")
+      ->check(any_number());
   command->add_option("--pixels-per-scale", o.pixels_per_scale, "Pixels to a scale width")
       ->check(whole_number(4, 256));
   command->add_option("--seed", o.seed, "Random seed of voronoi scales")->check(whole_number(0, kAnySeed));
@@ -256,21 +276,27 @@ void add_mesh(CLI::App& app, MeshOptions& o, int& exit_code) {
   command->add_option("shape", o.shape, "Shape")
       ->required()
       ->check(CLI::IsMember({"snake", "torus", "sphere"}));
-  command->add_option("-o,--output", o.output, "Mesh to write (.ply or .obj)")->required();
+  command->add_option("-o,--output", o.output, "Mesh to write (.ply or .obj)")
+      ->required()
+      ->check(file_path());
   command
       ->add_option("--resolution", o.resolution, "Vertices around: the snake's body, the axis of the others")
       ->check(whole_number(16, 1024));
-  command->add_option("--body-radius", o.body_radius, "Of the snake, where it is thickest");
-  command->add_option("--turns", o.turns, "Of the snake's coil, 1 to 6");
-  command->add_option("--major-radius", o.major_radius, "Of the torus");
-  command->add_option("--minor-radius", o.minor_radius, "Of the torus");
-  command->add_option("--radius", o.radius, "Of the sphere");
+  command->add_option("--body-radius", o.body_radius, "Of the snake, where it is thickest")
+      ->check(any_number());
+  command->add_option("--turns", o.turns, "Of the snake's coil, 1 to 6")->check(any_number());
+  command->add_option("--major-radius", o.major_radius, "Of the torus")->check(any_number());
+  command->add_option("--minor-radius", o.minor_radius, "Of the torus")->check(any_number());
+  command->add_option("--radius", o.radius, "Of the sphere")->check(any_number());
   command->callback([&] { exit_code = run_mesh(o); });
 }
 
 void refuse_unknown_option(const CLI::App& command, const std::string& argument) {
   const std::string option = argument.substr(0, argument.find('='));
-  if (!option.starts_with("--") || command.get_option_no_throw(option)) return;
+  if (!option.starts_with("--")) return;
+  // CLI11 would take it for the option without a value.
+  if (argument == option + "=") throw Error(option + ": found ''; allowed: a value");
+  if (command.get_option_no_throw(option)) return;
   std::vector<std::string> names;
   for (const CLI::Option* known : command.get_options())
     for (const auto& name : known->get_lnames()) names.push_back("--" + name);
@@ -327,7 +353,10 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help_or_version) {
-    return app.exit(help_or_version);
+    std::ostringstream text, none;
+    app.exit(help_or_version, text, none);
+    write_output(text.view());
+    return 0;
   } catch (const CLI::ParseError& error) {
     throw Error(
         fmt::format("{}; see sunbeam {}--help", error.what(), argc > 1 ? std::string(argv[1]) + " " : ""));
@@ -335,19 +364,35 @@ int run(int argc, char** argv) {
   return exit_code;
 }
 
+void end_by(int signal) {
+  remove_temporaries();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+// What nohup and shells without job control have ignored stays so.
+void clean_up_on_signals() {
+  for (const int signal : {SIGHUP, SIGINT, SIGTERM})
+    if (std::signal(signal, end_by) == SIG_IGN) std::signal(signal, SIG_IGN);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  prepare_console();
+  clean_up_on_signals();
   std::signal(SIGXFSZ, SIG_IGN);  // a full quota is an error to report, like a full disk
   try {
     baseline_is_forced();  // refuses a wrong SUNBEAM_KERNELS before any work
-    return run(argc, argv);
+    const int exit_code = run(argc, argv);
+    require_output_written();
+    return exit_code;
   } catch (const Error& error) {
-    fmt::print(stderr, "sunbeam: error: {}\n", printable(error.what()));
+    message("sunbeam: error: {}", error.what());
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "sunbeam: error: not enough memory\n");
+    write_message("sunbeam: error: not enough memory\n");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "sunbeam: error: {}\n", printable(error.what()));
+    message("sunbeam: error: {}", error.what());
   }
   return 2;
 }

@@ -3,6 +3,7 @@
 #include "bake/blocks/parts.h"
 #include "bake/cli/commands.h"
 #include "bake/cli/finish.h"
+#include "bake/cli/separate_files.h"
 #include "bake/jobs/bake.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/file.h"
@@ -33,6 +34,7 @@ Encoding encoding_of(const BakeIdentity& identity, const std::string& path) {
 
 int run_merge(const MergeOptions& options) {
   require_table_extension(options.output);
+  require_separate(options.parts, {options.output});
   Parts parts(options.parts);
   const BakeIdentity& identity = parts.identity();
   const Recipe recipe = parse_recipe(identity.recipe, "recipe of " + options.parts.front());

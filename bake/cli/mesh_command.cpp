@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "bake/cli/commands.h"
+#include "bake/cli/console.h"
 #include "runtime/tracer/mesh_file.h"
 #include "runtime/tracer/snake.h"
 #include "sunbeam/core/error.h"
@@ -44,8 +45,7 @@ int run_mesh(const MeshOptions& options) {
                     : options.shape == "torus" ? make_torus(options)
                                                : make_sphere(options);
   write_mesh(options.output, mesh);
-  fmt::print(stderr, "{}: {} vertices, {} triangles\n", options.output, mesh.positions.size(),
-             mesh.triangles.size());
+  message("{}: {} vertices, {} triangles", options.output, mesh.positions.size(), mesh.triangles.size());
   return 0;
 }
 

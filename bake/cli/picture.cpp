@@ -9,6 +9,7 @@
 #include <map>
 
 #include "bake/base/version.h"
+#include "bake/cli/console.h"
 #include "runtime/tracer/image_io.h"
 #include "sunbeam/core/error.h"
 
@@ -46,11 +47,11 @@ ExrImage as_exr(const RenderResult& picture, const PictureSource& source) {
 void report_clipping(const std::string& png, const ClipAccount& account) {
   constexpr double kNegligible = 1e-4;
   if (account.luminance_added <= kNegligible * std::abs(account.luminance)) return;
-  fmt::print(stderr,
-             "{}: {} of {} pixels lie outside Rec.709 (lowest component {:.3g}); raising them to 0 added "
-             "{:.2g} % of luminance. The .exr keeps their sign.\n",
-             png, account.clipped, account.colors, account.lowest,
-             100 * account.luminance_added / std::abs(account.luminance));
+  message(
+      "{}: {} of {} pixels lie outside Rec.709 (lowest component {:.3g}); raising them to 0 added "
+      "{:.2g} % of luminance. The .exr keeps their sign.",
+      png, account.clipped, account.colors, account.lowest,
+      100 * account.luminance_added / std::abs(account.luminance));
 }
 
 void require_same_source(const std::string& path, const ExrImage& exr, const PictureSource& source) {

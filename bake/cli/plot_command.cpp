@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "bake/cli/commands.h"
+#include "bake/cli/separate_files.h"
 #include "bake/recipe/recipe.h"
 #include "bake/report/chart.h"
 #include "bake/report/polar_chart.h"
@@ -77,6 +78,7 @@ std::unique_ptr<TableAppearance> bind(const Table& table, const Parameters& para
 int run_plot(const PlotOptions& options) {
   check_extension(options);
   const double degrees = theta_i_deg(options);
+  require_separate({options.table}, {options.output});
   const Table table = load_table(options.table);
   const Parameters parameters = parameters_of(options, table.material);
   const auto skin = bind(table, parameters, options.table);

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstdio>
+#include "bake/cli/console.h"
 
 namespace sunbeam {
 namespace {
@@ -63,18 +63,17 @@ void Progress::show(const State& s) {
   if (form_ == ProgressForm::json) {
     if (!finished && pause < 1) return;
     last_ = now;
-    fmt::print(stderr, "{}\n", json(s));
+    message_line(json(s));
   } else if (terminal_) {
     if (!finished && pause < 0.1) return;
     last_ = now;
     constexpr int kWidth = 24;
     const int filled = static_cast<int>(s.fraction * kWidth);
-    fmt::print(stderr, "\r[{}{}] {}\x1b[K{}", std::string(filled, '#'), std::string(kWidth - filled, '.'),
-               line(s), finished ? "\n" : "");
-    std::fflush(stderr);
+    write_message(fmt::format("\r[{}{}] {}\x1b[K{}", std::string(filled, '#'),
+                              std::string(kWidth - filled, '.'), line(s), finished ? "\n" : ""));
   } else if (static_cast<int>(s.fraction * 10) > tenths_) {
     tenths_ = static_cast<int>(s.fraction * 10);
-    fmt::print(stderr, "{}\n", line(s));
+    message_line(line(s));
   }
 }
 

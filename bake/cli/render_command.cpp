@@ -6,10 +6,12 @@
 #include <optional>
 
 #include "bake/cli/commands.h"
+#include "bake/cli/console.h"
 #include "bake/cli/interrupt.h"
 #include "bake/cli/json_text.h"
 #include "bake/cli/picture.h"
 #include "bake/cli/progress.h"
+#include "bake/cli/separate_files.h"
 #include "bake/scene/materials.h"
 #include "runtime/config/config.h"
 #include "runtime/tracer/render.h"
@@ -75,16 +77,27 @@ double parse_seconds(const std::string& text) {
                        : unit == "m"               ? 60
                        : unit == "h"               ? 3600
                                                    : 0;
-  if (number.ec != std::errc() || scale == 0 || !(value > 0) || !std::isfinite(value))
-    throw Error(
-        fmt::format("--time: found '{}'; allowed: a number above 0 with s, ms, m or h, such as 10s", text));
+  constexpr double kLongest = 1e9;
+  if (number.ec != std::errc() || scale == 0 || !(value > 0 && scale * value <= kLongest))
+    throw Error(fmt::format(
+        "--time: found '{}'; allowed: a number above 0 with s, ms, m or h, such as 10s, up to {:g} s", text,
+        kLongest));
   return scale * value;
 }
 
 // The scene file's own content but for the number of samples, which a continued picture may raise.
-std::string scene_hash(const std::string& path, std::vector<std::string> overrides) {
+std::string scene_hash(const std::string& text, const std::string& path, std::vector<std::string> overrides) {
   overrides.push_back("render.spp=1");
-  return content_hash(ConfigTable::load(path, overrides).canonical_text());
+  return content_hash(ConfigTable::parse(text, path, overrides).canonical_text());
+}
+
+// The picture may be the one to go on from.
+void require_separate_outputs(const RenderOptions& options, const Scene& scene) {
+  const std::string png = png_beside(options.output);
+  std::vector<std::string> inputs = scene.files;
+  inputs.insert(inputs.end(), {options.scene, options.table});
+  require_separate(inputs, {options.output, png, options.stats});
+  require_separate({options.resume}, {png, options.stats});
 }
 
 // A bar on stderr, the picture so far on disk every few seconds, and Ctrl-C.
@@ -177,17 +190,18 @@ int run_render(const RenderOptions& options) {
   const Clock::time_point start = Clock::now();
   require_sound(options);
   RenderSettings settings = read_settings(options);
-  Scene scene = load_scene(options.scene, options.overrides);
-  for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", printable(warning));
+  const std::string scene_text = read_text(options.scene);
+  Scene scene = read_scene(ConfigTable::parse(scene_text, options.scene, options.overrides));
+  for (const std::string& warning : scene.warnings) message("warning: {}", warning);
+  require_separate_outputs(options, scene);
   if (!options.table.empty()) scene.table = options.table;
   const SceneMaterials materials(scene, options.scene, options.material, estimator_of(options.estimator));
-  for (const std::string& warning : materials.warnings())
-    fmt::print(stderr, "warning: {}\n", printable(warning));
+  for (const std::string& warning : materials.warnings()) message("warning: {}", warning);
   for (const auto& path : {options.output, png_beside(options.output)}) require_writable(path);
   if (!options.stats.empty()) require_writable(options.stats);
 
   const PictureSource source{.scene = options.scene,
-                             .scene_hash = scene_hash(options.scene, options.overrides),
+                             .scene_hash = scene_hash(scene_text, options.scene, options.overrides),
                              .material = options.material,
                              .estimators = materials.estimators(),
                              .table_hash = materials.table_hash(),
@@ -207,14 +221,13 @@ int run_render(const RenderOptions& options) {
   if (!options.stats.empty())
     write_file_atomically(options.stats, stats_json(result.stats, materials.estimators()));
   if (result.stats.bad_samples > 0)
-    fmt::print(stderr, "warning: {} samples were not finite, or beyond 1e18, and count as black\n",
-               result.stats.bad_samples);
-  if (!materials.estimators().empty()) fmt::print(stderr, "estimator: {}\n", materials.estimators());
-  fmt::print(stderr, "{} and {}: {:.2f} s, {:.3g} samples/s\n", options.output, png_beside(options.output),
-             result.stats.seconds, result.stats.samples_per_second);
+    message("warning: {} samples were not finite, or beyond 1e18, and count as black",
+            result.stats.bad_samples);
+  if (!materials.estimators().empty()) message("estimator: {}", materials.estimators());
+  message("{} and {}: {:.2f} s, {:.3g} samples/s", options.output, png_beside(options.output),
+          result.stats.seconds, result.stats.samples_per_second);
   if (!result.stats.stopped) return 0;
-  fmt::print(stderr, "stopped at {:.0f} %; go on with --resume {}\n", 100 * result.stats.fraction,
-             options.output);
+  message("stopped at {:.0f} %; go on with --resume {}", 100 * result.stats.fraction, options.output);
   return 130;  // as a shell tells an interrupted command
 }
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "bake/cli/commands.h"
+#include "bake/cli/console.h"
 #include "runtime/tracer/height_map.h"
 #include "runtime/tracer/scales.h"
 #include "runtime/tracer/snake_scales.h"
@@ -46,8 +47,8 @@ int run_texture(const TextureOptions& options) {
   const HeightMap map = scale_height_map(layout, options.edge, options.pixels_per_scale);
   write_height_map(options.output, map);
   const Point2 size = tile_size(layout);
-  fmt::print(stderr, "{}: {} x {} pixels, {:g} x {:.4f} scale widths\n", options.output, map.width,
-             map.height, size.x, size.y);
+  message("{}: {} x {} pixels, {:g} x {:.4f} scale widths", options.output, map.width, map.height, size.x,
+          size.y);
   return 0;
 }
 

@@ -9,8 +9,10 @@
 
 #include "bake/check/verify.h"
 #include "bake/cli/commands.h"
+#include "bake/cli/console.h"
 #include "bake/cli/json_text.h"
 #include "bake/cli/progress.h"
+#include "bake/cli/separate_files.h"
 #include "bake/recipe/recipe.h"
 #include "bake/report/html_report.h"
 #include "sunbeam/core/error.h"
@@ -27,14 +29,13 @@ void print_worst(const VerifyReport& report) {
   const std::size_t count = std::min(kWorstPoints, points.size());
   std::partial_sort(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count), points.end(),
                     [](const auto& a, const auto& b) { return a.error > b.error; });
-  fmt::print(
-      "worst points: film_thickness_nm  base_ior  absorption_per_nm  theta_i_deg  phi_i_deg     error  "
+  out("worst points: film_thickness_nm  base_ior  absorption_per_nm  theta_i_deg  phi_i_deg     error  "
       "noise_floor\n");
   for (std::size_t k = 0; k < count; ++k) {
     const VerifyPoint& p = points[k];
-    fmt::print("              {:>17.2f} {:>9.4f} {:>18.4f} {:>12.2f} {:>10.2f} {:>9.5f} {:>12.5f}\n",
-               p.parameters.film_thickness_nm, p.parameters.base_ior, p.parameters.absorption_per_nm,
-               std::acos(p.cos_i) * 180 / kPi, p.phi_i * 180 / kPi, p.error, p.noise_floor);
+    out("              {:>17.2f} {:>9.4f} {:>18.4f} {:>12.2f} {:>10.2f} {:>9.5f} {:>12.5f}\n",
+        p.parameters.film_thickness_nm, p.parameters.base_ior, p.parameters.absorption_per_nm,
+        std::acos(p.cos_i) * 180 / kPi, p.phi_i * 180 / kPi, p.error, p.noise_floor);
   }
 }
 
@@ -70,8 +71,11 @@ void check_html(const std::string& path) {
 void write_html(const VerifyOptions& options, const Table& table, const Recipe& recipe,
                 const VerifySettings& settings, const VerifyReport& report) {
   const std::filesystem::path path = options.table;
+  std::error_code no_file;  // but a FIFO
+  std::uintmax_t bytes = file_size(path, no_file);
+  if (no_file) bytes = table_bytes(table, options.table).size();
   const ReportSource source = {
-      table, recipe, settings, report, path.filename().string(), file_size(path), command_of(options)};
+      table, recipe, settings, report, path.filename().string(), bytes, command_of(options)};
   write_file_atomically(options.html, html_report(source));
 }
 
@@ -86,6 +90,7 @@ Estimator truth_of(const VerifyOptions& options, const Recipe& recipe) {
 }  // namespace
 
 int run_verify(const VerifyOptions& options) {
+  require_separate({options.table}, {options.json, options.html});
   const Table table = load_table(options.table);
   const Recipe recipe = parse_stored_recipe(table.info.at("recipe"), options.table + ": recipe");
   if (!options.json.empty()) require_writable(options.json);
@@ -98,8 +103,8 @@ int run_verify(const VerifyOptions& options) {
   settings.on_progress = Progress("verify", "points", options.points);
   const VerifyReport report = verify(table, settings);
 
-  fmt::print("truth                   {}\n", report.truth);
-  for (const auto& [name, value] : figures(report)) fmt::print("{:<24}{:.6g}\n", name, value);
+  out("truth                   {}\n", report.truth);
+  for (const auto& [name, value] : figures(report)) out("{:<24}{:.6g}\n", name, value);
   print_worst(report);
   if (!options.json.empty()) write_file_atomically(options.json, report_json(report));
   if (!options.html.empty()) write_html(options, table, recipe, settings, report);
@@ -107,7 +112,7 @@ int run_verify(const VerifyOptions& options) {
   const bool passed = within_tolerance(report, settings);
   std::vector<std::string> verdicts;
   for (const Limit& limit : limits(report, settings)) verdicts.push_back(to_string(limit));
-  fmt::print("{}: {}\n", passed ? "PASS" : "FAIL", fmt::join(verdicts, ", "));
+  out("{}: {}\n", passed ? "PASS" : "FAIL", fmt::join(verdicts, ", "));
   return passed ? 0 : 1;
 }
 

@@ -1,4 +1,5 @@
-// The folder OUTPUT.work keeps what an unfinished bake has done so far. It holds one journal an encoding.
+// The folder OUTPUT.work keeps what an unfinished bake has done so far. It holds one journal an encoding, and
+// stands beside the file that OUTPUT leads to through symbolic links.
 #pragma once
 
 #include <string>

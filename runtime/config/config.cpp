@@ -17,8 +17,12 @@
 namespace sunbeam {
 
 struct ConfigTable::Node {
+  struct Document {
+    toml::table values;
+    std::vector<std::string> resolved;  // paths
+  };
   // Copies of toml++ nodes forget their line, so every table points into the one parsed document.
-  std::shared_ptr<const toml::table> document;
+  std::shared_ptr<Document> document;
   const toml::table* values;
   std::string file;
   std::string path;  // dotted path of this table, "" at the top
@@ -136,15 +140,15 @@ ConfigTable ConfigTable::load(const std::string& path, const std::vector<std::st
 
 ConfigTable ConfigTable::parse(const std::string& text, const std::string& name,
                                const std::vector<std::string>& overrides) {
-  auto document = std::make_shared<toml::table>();
+  auto document = std::make_shared<Node::Document>();
   try {
-    *document = toml::parse(text, name);
+    document->values = toml::parse(text, name);
   } catch (const toml::parse_error& error) {
     throw Error(
         fmt::format("{}:{}: not valid TOML: {}", name, error.source().begin.line, error.description()));
   }
-  for (const auto& override_text : overrides) apply_override(*document, override_text, name);
-  const toml::table* values = document.get();
+  for (const auto& override_text : overrides) apply_override(document->values, override_text, name);
+  const toml::table* values = &document->values;
   return ConfigTable(std::make_shared<Node>(Node{std::move(document), values, name, "", {}, {}}));
 }
 
@@ -234,7 +238,8 @@ std::vector<std::pair<double, double>> ConfigTable::curve(std::string_view key, 
                                           range_text(allowed_x), range_text(allowed_y));
   const auto number_of = [](const toml::array& pair, std::size_t k, const Range& range) {
     const auto value = pair[k].is_number() ? pair[k].value<double>() : std::nullopt;
-    return value && *value >= range.low && *value <= range.high ? value : std::nullopt;
+    return value && std::isfinite(*value) && *value >= range.low && *value <= range.high ? value
+                                                                                         : std::nullopt;
   };
   const toml::node* node = node_->ask(key);
   if (!node || !node->is_array())
@@ -305,8 +310,12 @@ void ConfigTable::finish() const {
 const std::string& ConfigTable::file() const { return node_->file; }
 
 std::string ConfigTable::resolve(const std::string& relative_path) const {
-  return (std::filesystem::path(node_->file).parent_path() / relative_path).lexically_normal().string();
+  node_->document->resolved.push_back(
+      (std::filesystem::path(node_->file).parent_path() / relative_path).string());
+  return node_->document->resolved.back();
 }
+
+const std::vector<std::string>& ConfigTable::resolved_files() const { return node_->document->resolved; }
 
 std::string ConfigTable::canonical_text() const {
   std::ostringstream text;

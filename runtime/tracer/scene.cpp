@@ -425,6 +425,7 @@ Scene read_scene(const ConfigTable& config) {
   // Last, so that errors count the objects as the file does.
   scene.objects.insert(scene.objects.end(), eyes.begin(), eyes.end());
   config.finish();
+  scene.files = config.resolved_files();
   if (scene.objects.empty()) config.fail("object", "found none; allowed: at least one [[object]]");
   return scene;
 }

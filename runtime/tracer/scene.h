@@ -121,6 +121,7 @@ struct Scene {
   std::vector<DirectionalLight> directional_lights;
   std::vector<SceneMaterial> materials;
   std::vector<SceneObject> objects;   // those of the file, then the eyes of its snakes
+  std::vector<std::string> files;     // all that the scene names, resolved
   std::vector<std::string> warnings;  // a line each, for people: what was left out of files
 };
 

@@ -103,5 +103,76 @@ class Mistakes(support.CliTest):
                 self.refuse(*arguments, naming=needles)
 
 
+class Numbers(support.CliTest):
+    """Every option of every command that takes a number, as --help lists them, refuses what is none."""
+
+    COMMANDS = {
+        "bake": ("tiny.toml", "-o", "new.exr", "--preview"),
+        "merge": ("tiny.part", "-o", "new.exr"),
+        "info": ("tiny.exr",),
+        "eval": ("tiny.exr", "--points", "points.csv"),
+        "verify": ("tiny.exr", "--points", "1"),
+        "plot": ("tiny.exr", "--what", "polar", "-o", "new.svg"),
+        "render": ("scene.toml", "-o", "new.exr", "--material", "diffuse"),
+        "compare": ("a.exr", "a.exr"),
+        "texture": ("-o", "new.png", "--columns", "1", "--rows", "2", "--pixels-per-scale", "4"),
+        "mesh": ("sphere", "-o", "new.ply", "--resolution", "16"),
+    }
+    # Options that help shows as text, and how the text holds the number.
+    IN_TEXT = {"--shard": "{}/2", "--size": "{}x8", "--crop": "0,0,{},8", "--time": "{}s", "--set": "material.albedo={}"}
+    NO_NUMBER = {"--output", "--set", "--progress", "--points", "--quantity", "--estimator", "--truth", "--json", "--html",
+                 "--what", "--material", "--table", "--resume", "--stats", "--png", "--pattern", "--help"}
+    BAD = ("nan", "inf", "-inf", "1e999", "", "0x1p3", "-1e400")  # in turns: a run takes a twentieth of a second
+
+    @classmethod
+    def prepare(cls):
+        cls.write("scene.toml", support.SKY_SPHERE_SCENE.format(name="tiny", spp=1, max_bounces=2, tangent_rotation_deg=0))
+        cls.write("points.csv", "theta_i_deg,theta_o_deg,phi_deg\n1,2,3\n")
+        support.succeed_in(cls.folder, "bake", "tiny.toml", "-o", "tiny.exr", "--preview")
+        support.succeed_in(cls.folder, "bake", "tiny.toml", "-o", "tiny.part", "--shard", "1/1")
+        support.succeed_in(cls.folder, "render", "scene.toml", "-o", "a.exr", "--material", "diffuse")
+
+    def arguments_of(self, command, option, value):
+        """The command with this option, in place of one that is there."""
+        arguments = list(self.COMMANDS[command])
+        if command == "mesh" and option in ("--body-radius", "--turns", "--major-radius", "--minor-radius"):
+            arguments[0] = "torus" if option.endswith("or-radius") else "snake"
+        if command == "eval" and option == "--set":
+            arguments[0] = "tiny.toml"
+        if command == "bake" and option == "--shard":
+            arguments.remove("--preview")
+        if option in arguments:
+            at = arguments.index(option)
+            del arguments[at:at + 2]
+        if option == "--set":
+            value = value.replace("material.albedo", "object[0].radius" if command == "render" else "material.albedo")
+        return (command, *arguments, f"{option}={value}")
+
+    def test_every_numeric_option(self):
+        listed = re.findall(r"(?m)^  (\w+) ", self.succeed("--help").out.split("Subcommands:\n", 1)[1].split("Example:")[0])
+        self.assertEqual(sorted(listed), sorted(self.COMMANDS))
+        seen = []
+        for command in self.COMMANDS:
+            for option, kind in re.findall(r"(?m)^  (?:-\w,)?(--[\w-]+)(?:\{\w+\})? *(INT|UINT|FLOAT|TEXT)?", self.succeed(command, "--help").out):
+                is_number = kind in ("INT", "UINT", "FLOAT") or option == "--watch" or (command, option) == ("verify", "--points")
+                form = "{}" if is_number else self.IN_TEXT.get(option)
+                if form is None:
+                    self.assertTrue(option in self.NO_NUMBER or not kind, (command, option))
+                    continue
+                seen.append(option)
+                in_turn = self.BAD[len(seen) % len(self.BAD)]
+                for value in {in_turn} | ({"nan"} if kind not in ("INT", "UINT") else set()):
+                    with self.subTest(command=command, option=option, value=value):
+                        result = self.sunbeam(*self.arguments_of(command, option, form.format(value)))
+                        self.check_refusal(result, {"--set": "radius" if command == "render" else "albedo"}.get(
+                            option, option.strip("-").split("-")[0]))
+        self.assertGreaterEqual(set(seen), {
+            "--threads", "--seed", "--samples", "--points", "--film-thickness-nm", "--base-ior", "--absorption-per-nm",
+            "--theta-i", "--spp", "--noise", "--watch", "--pixels-per-degree", "--max-rmse", "--max-relmse", "--max-flip",
+            "--max-bias", "--max-bias-z", "--columns", "--rows", "--edge", "--jitter", "--pixels-per-scale", "--resolution",
+            "--body-radius", "--turns", "--major-radius", "--minor-radius", "--radius", "--max-memory", *self.IN_TEXT})
+        self.assertEqual([n for n in self.names() if n.startswith("new")], [])
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -40,7 +40,7 @@ void AtomicFile::seek(std::uint64_t position) {
 }
 
 void AtomicFile::keep() {
-  if (!temporary_) return write_to_stream(target_, stream_);
+  if (!temporary_) return write_to_stream(target_, stream_, path_);
   errno = 0;
   file_.close();
   if (!file_ || !temporary_->replace_target()) fail_to_write(path_, errno);
@@ -54,7 +54,7 @@ void write_file_atomically(const std::string& path, std::string_view bytes) {
 
 void move_into_place(const std::string& from, const std::string& path) {
   const OutputTarget target = output_target(path);
-  if (target.is_stream) return write_to_stream(target.path, read_file(from));
+  if (target.is_stream) return write_to_stream(target.path, read_file(from), path);
   if (!copy_access(from, target.path)) fail_to_write(path, errno);
   std::error_code error;
   std::filesystem::rename(from, target.path, error);
@@ -66,8 +66,6 @@ void require_writable(const std::string& path) {
   const OutputTarget target = output_target(path);
   if (!target.is_stream) TemporaryFile probe(target.path);
 }
-
-std::string written_path(const std::string& path) { return output_target(path).path; }
 
 }  // namespace v1
 }  // namespace sunbeam

@@ -87,18 +87,18 @@ OutputTarget output_target(const std::string& path) {
 
 #ifdef SUNBEAM_PORTABLE
 
-void write_to_stream(const std::string& path, std::string_view bytes) {
+void write_to_stream(const std::string& path, std::string_view bytes, const std::string& name) {
   errno = 0;
   std::ofstream stream(path, std::ios::binary | std::ios::app);
   if (!stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size())).flush())
-    fail_to_write(path, errno);
+    fail_to_write(name, errno);
 }
 
 #else
 
-void write_to_stream(const std::string& path, std::string_view bytes) {
+void write_to_stream(const std::string& path, std::string_view bytes, const std::string& name) {
   const int descriptor = open_stream(path);
-  if (descriptor < 0) fail_to_write(path, errno);
+  if (descriptor < 0) fail_to_write(name, errno);
   int error = 0;
   while (!bytes.empty() && error == 0) {
     const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
@@ -106,7 +106,7 @@ void write_to_stream(const std::string& path, std::string_view bytes) {
     if (count < 0 && errno != EINTR) error = errno;
   }
   if (::close(descriptor) != 0 && error == 0) error = errno;
-  if (error != 0) fail_to_write(path, error);
+  if (error != 0) fail_to_write(name, error);
 }
 
 #endif

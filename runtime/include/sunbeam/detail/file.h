@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <fstream>
+#include <istream>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -46,7 +47,13 @@ class AtomicFile {
 // end within read_limit(0).
 std::string read_file(const std::string& path);
 
-// Returns the same for a text, without the byte order mark of UTF-8. Throws Error for UTF-16 too.
+// Returns what is left of a stream, in the same way. `size` is how much that may be, 0 if it is not known.
+std::string read_stream(std::istream& in, const std::string& name, std::uint64_t size = 0);
+
+// Returns a text without the byte order mark of UTF-8. Throws Error for UTF-16.
+std::string utf8_text(std::string_view bytes, const std::string& name);
+
+// Returns the text of a file, by both.
 std::string read_text(const std::string& path);
 
 // Writes these bytes by an AtomicFile.
@@ -60,8 +67,14 @@ void move_into_place(const std::string& from, const std::string& path);
 // A device or a FIFO is not opened.
 void require_writable(const std::string& path);
 
-// Returns what `path` leads to through symbolic links. Throws Error if it cannot be written.
-std::string written_path(const std::string& path);
+struct OutputTarget {
+  std::string path;        // with symbolic links followed: a file to replace, or one to make
+  bool is_stream = false;  // a device, a FIFO or a descriptor of this process, such as /dev/stdout
+};
+
+// Follows symbolic links as the system does; a link that leads nowhere names the file to make. Throws Error
+// naming `path` for a folder, and for a file that may not be written. Nothing is opened.
+OutputTarget output_target(const std::string& path);
 
 // Removes the temporaries of all files that are being written. A program that is about to end may call it in
 // a signal handler.

@@ -1,12 +1,15 @@
 #include "bake/jobs/finish_bake.h"
 
+#include "sunbeam/detail/table_ranges.h"
 #include "sunbeam/detail/text.h"
 #include "sunbeam/table_vdb.h"
 
 namespace sunbeam {
 
 FinishedBake::FinishedBake(const Recipe& recipe, const BakeJob& job, const Blocks& blocks)
-    : recipe_(recipe), table_(job.table(blocks)) {}
+    : recipe_(recipe), table_(job.table(blocks)) {
+  require_in_ranges(table_.head());  // no reader would take it
+}
 
 VerifyReport FinishedBake::measure_error(int points, int threads,
                                          std::function<void(double fraction)> on_progress) {

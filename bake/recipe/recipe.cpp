@@ -108,6 +108,7 @@ std::vector<Axis> read_grid(const ConfigTable& grid, const Material& material) {
   std::vector<Axis> axes;
   for (Axis axis : bare_axes(material)) {
     axis.nodes = grid.has(axis.name) ? read_nodes(grid, axis) : std::vector{defaults[axes.size()]};
+    if (const std::string defect = axis.defect(); !defect.empty()) grid.fail(axis.name, defect);
     axes.push_back(std::move(axis));
   }
   return axes;

@@ -10,6 +10,8 @@ constexpr double kLeastCosine = 1e-4;
 constexpr double kLeastShare = 0.3;    // of the channels' mean: a folded colour may pass through 0
 constexpr double kLeastScale = 1e-18;  // and a pigment let nothing through; its square is a float yet
 
+constexpr double kMostRatio = 1e30;  // a float yet, times two scales
+
 // Directions at cosines that are even, or whose roots are, and at even azimuths of a quadrant.
 struct Grid {
   int cosines, phis;
@@ -50,7 +52,8 @@ void find_ratios(const BoundWaves& waves, const Grid& grid, std::vector<Color4>&
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const auto row = waves.row(nodes[i]);
     for (std::size_t o = 0; o <= i; ++o) {
-      const Rgb ratio = waves.rest(row, nodes[o]) / (scales[i] * scales[o]);
+      const Rgb ratio = transform(waves.rest(row, nodes[o]) / (scales[i] * scales[o]),
+                                  [](double q) { return std::clamp(q, -kMostRatio, kMostRatio); });
       ratios[i * nodes.size() + o] = ratios[o * nodes.size() + i] = to_color4(ratio);
     }
   }

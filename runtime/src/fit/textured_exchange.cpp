@@ -6,6 +6,16 @@
 
 namespace sunbeam {
 inline namespace v1 {
+namespace {
+
+// X as a float that stays one when it is multiplied by two factors of exp(20). Sums of floats that pass their
+// range have no value.
+double bounded(double x) {
+  constexpr double kMost = 1e18;
+  return std::isfinite(x) ? std::clamp(x, -kMost, kMost) : 0;
+}
+
+}  // namespace
 
 TexturedExchange::TexturedExchange(const NdArray& exchange, const TexturedWaves& waves,
                                    const TexturedMedia& media, const TexturedFactor& factor,
@@ -58,8 +68,8 @@ void TexturedExchange::find_pairs(int d, Color4* pairs) const {
     scales.push_back(factor_.value(nodes_, d, end.c, static_cast<int>(end.column)));
   for (std::size_t a = 0; a < ends; ++a)
     for (std::size_t b = 0; b < ends; ++b)
-      pairs[a * ends + b] =
-          to_color4(sum[a * ends + b] / (scales[a] * scales[b]) - one_visit(ends_[a], ends_[b]));
+      pairs[a * ends + b] = to_color4(
+          transform(sum[a * ends + b] / (scales[a] * scales[b]) - one_visit(ends_[a], ends_[b]), bounded));
 }
 
 // What of a pair X leaves to its closed form.

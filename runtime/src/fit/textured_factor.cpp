@@ -11,8 +11,9 @@ namespace {
 constexpr double kLeastShare = 0.01;  // of the channels' mean: a folded colour may pass through 0
 // Of L. At grazing a pigment of many colours would leave it with poles, where no light is left.
 constexpr double kLeastLog = -80, kMostLog = 20;
-constexpr double kLeastChance = 0.02;  // of either technique: their estimates may be far off
-constexpr double kLeastValue = 1e-18;  // of B over its frame
+constexpr double kLeastChance = 0.02;   // of either technique: their estimates may be far off
+constexpr double kLeastValue = 1e-18;   // of B over its frame
+constexpr double kLeastScale = 1e-150;  // of B, which is divided by twice
 
 // Of a node in the mean over the quadrant, by trapezoids.
 double phi_share(int p, int phis) {
@@ -135,7 +136,8 @@ Rgb TexturedFactor::value(const std::vector<Color4>& nodes, int d, int c, int co
   const Rgb passing = this->passing(c, thickness, reflectance(thickness, c));
   Rgb b;
   for (int channel = 0; channel < 3; ++channel)
-    b[channel] = std::exp(logs[channel] + waves_.least_decay(c) - decay(channel, c)) * passing[channel];
+    b[channel] = std::max(
+        std::exp(logs[channel] + waves_.least_decay(c) - decay(channel, c)) * passing[channel], kLeastScale);
   return b;
 }
 

@@ -17,8 +17,9 @@ WaveField::WaveField(const Table& table, const Material& material)
 }
 
 double WaveField::gain(std::size_t k, double returned) const {
+  constexpr double kMostReturned = 0.9999;  // interpolation may overshoot what nodes hold
   const double once = material_.radiance_scale() * wavelengths().albedo[k] * kInvPi;
-  return once / (1 - wavelengths().albedo[k] * returned);
+  return once / (1 - std::min(wavelengths().albedo[k] * returned, kMostReturned));
 }
 
 std::vector<DirectionTap> direction_taps(const Axis& cosines, const Axis& phis, double coordinate,

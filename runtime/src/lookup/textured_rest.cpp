@@ -1,12 +1,30 @@
 #include "runtime/src/lookup/textured_rest.h"
 
 #include "runtime/src/fit/textured_fit.h"
+#include "sunbeam/core/error.h"
+#include "sunbeam/core/read_limit.h"
+#include "sunbeam/detail/text.h"
 
 namespace sunbeam {
 inline namespace v1 {
+namespace {
+
+// A small file can say that its films are a tenth of a millimetre thick, which takes nodes by the million.
+void require_reasonable_size(const TexturedGrid& grid, bool has_pairs) {
+  const std::uint64_t cells = grid.cells() + (has_pairs ? grid.pair_cells() : 0);
+  const std::uint64_t bytes = cells * sizeof(Color4), most = 4 * read_limit(0);
+  if (bytes > most)
+    throw Error("textured look-ups of films up to " + to_text(grid.axes[0].high()) + " nm take " +
+                to_text(std::ceil(static_cast<double>(bytes) / 1e6)) + " MB of memory; allowed: up to " +
+                to_text(static_cast<double>(most) / 1e6) + " MB");
+}
+
+}  // namespace
+
 TexturedRest::TexturedRest(const Table& table, Arithmetic arithmetic)
     : grid_(table), media_(table, arithmetic), stride_(static_cast<int>(grid_.path_stride())) {
   for (int k = 0; k < 4; ++k) corner_[k] = static_cast<int>(grid_.row(k >> 1, k & 1));
+  require_reasonable_size(grid_, !table.factors.exchange.empty());
   TexturedFit fit = fit_textured(table, grid_, media_);
   nodes_ = std::move(fit.nodes);
   pairs_ = std::move(fit.pairs);

@@ -69,13 +69,33 @@ Stencil Axis::stencil(double x) const {
   return result;
 }
 
+namespace {
+
+// Differences of coordinates are divided by, also in floats.
+bool has_coinciding_nodes(const Axis& axis) {
+  constexpr double kLeastShare = 1e-6, kLeastRelative = 1e-12;
+  const double first = axis.coordinate(axis.low()), last = axis.coordinate(axis.high());
+  const double least =
+      std::max(kLeastShare * (last - first), kLeastRelative * std::max(std::abs(first), std::abs(last)));
+  double before = first;
+  for (std::size_t i = 1; i < axis.size(); ++i) {
+    const double here = axis.coordinate(axis.nodes[i]);
+    if (!(here - before >= least) || !std::isfinite(here)) return true;
+    before = here;
+  }
+  return axis.period > 0 && axis.size() > 1 && !(last - before >= least);
+}
+
+}  // namespace
+
 std::string Axis::defect() const {
   if (nodes.empty()) return "has no nodes";
   if (!(power >= 1 && power <= 8)) return "has a power outside 1 to 8";
   if (!(period >= 0) || !std::isfinite(period)) return "has a bad period";
   if (!std::isfinite(origin)) return "has an origin that is not finite";
-  if (!(softness >= 0) || !std::isfinite(softness) || (softness > 0 && power != 2))
-    return "has a bad softness";
+  constexpr double kLeastSoftness = 1e-6, kMostSoftness = 1;
+  const bool is_softened = softness >= kLeastSoftness && softness <= kMostSoftness && power == 2;
+  if (softness != 0 && !is_softened) return "has a bad softness";
   if (period > 0 && is_cubic) return "is both periodic and cubic";
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (!std::isfinite(nodes[i])) return "has a node that is not finite";
@@ -85,6 +105,7 @@ std::string Axis::defect() const {
   const bool has_kink = power != 1 && softness == 0 && nodes.front() < origin && origin < nodes.back();
   if (has_kink && !std::binary_search(nodes.begin(), nodes.end(), origin))
     return "has its origin between two nodes";
+  if (has_coinciding_nodes(*this)) return "has nodes whose coordinates coincide";
   return {};
 }
 

@@ -11,6 +11,7 @@ inline namespace v1 {
 namespace {
 
 constexpr double kLeastShare = 1e-30;  // its logarithm is taken
+constexpr double kMostLogShare = 2;    // at 0 all light arrives, and interpolation errs by little
 constexpr double kFloor = 1e-4;        // where the film reflects all but this, the rest does not tell
 
 bool bends(const Material& m) { return m.transmission == Transmission::refract; }
@@ -76,8 +77,8 @@ double FactorFrame::arrival(double share, double decay) const {
 }
 
 double FactorFrame::share(double arrival, double decay) const {
-  if (!is_warped_) return std::exp(arrival - decay);
-  return std::max(0.0, std::exp(arrival) - floor_) * std::exp(-decay);
+  if (!is_warped_) return std::exp(std::min(arrival - decay, kMostLogShare));
+  return std::max(0.0, std::exp(std::min(arrival, kMostLogShare)) - floor_) * std::exp(-decay);
 }
 
 }  // namespace v1

@@ -17,8 +17,9 @@ constexpr double kLeastOverMultipleFacets = 0.25;
 // How far F has fallen from `start`, per channel. A channel that starts or ends near 0, or beyond, while
 // others have light stays within a factor of 10 of their mean, so that the remainder stays bounded.
 Rgb decay_of(const Rgb& start, const Rgb& value) {
-  constexpr double kMostRatio = 10;
-  const double of_mean = mean(start) > 0 ? std::max(mean(value) / mean(start), std::exp(-kLargestDecay)) : 1;
+  constexpr double kMostRatio = 10, kMostGrowth = 1000;
+  const double of_mean =
+      mean(start) > 0 ? std::clamp(mean(value) / mean(start), std::exp(-kLargestDecay), kMostGrowth) : 1;
   Rgb decay;
   for (int c = 0; c < 3; ++c)
     decay[c] =

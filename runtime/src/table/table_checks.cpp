@@ -40,6 +40,16 @@ void check_ends(const Axis& axis, double low, double high) {
                 to_text(axis.nodes.back()) + "; expected " + to_text(low) + " to " + to_text(high));
 }
 
+void check_plain_axis(const Axis& axis, double low, double high) {
+  check_axis_range(axis, low, high);
+  check_period(axis, 0);
+}
+
+void check_parameter(const Axis& axis, const char* name) {
+  const Interval allowed = allowed_interval(name);
+  check_plain_axis(axis, allowed.low, allowed.high);
+}
+
 void check_azimuths(Symmetry symmetry, const Axis& phi_i, const Axis& phi_o) {
   check_period(phi_i, 0);
   if (symmetry == Symmetry::isotropic) {
@@ -98,12 +108,12 @@ void check_symmetry(const Table& table) {
 }
 
 void check_ranges(const Table& table) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Interval allowed = allowed_interval(kParameterNames[k]);
-    check_axis_range(table.parameter_axis(k), allowed.low, allowed.high);
-  }
+  for (std::size_t k = 0; k < 3; ++k) check_parameter(table.parameter_axis(k), kParameterNames[k]);
   if (table.is_factored()) return;
-  const auto& axes = table.remainder.axes();
+  const auto &axes = table.remainder.axes(), &film = table.film_reflectance.axes();
+  for (const std::size_t k : {0u, 1u}) check_parameter(film[k], kParameterNames[k]);
+  for (const std::size_t k : {3u, 5u}) check_period(axes[k], 0);
+  check_period(film[2], 0);
   for (const std::size_t k : {3u, 5u}) check_axis_range(axes[k], 1e-6, 1);
   check_azimuths(table.symmetry, axes[4], axes[6]);
   check_axis_range(table.film_reflectance.axes()[2], 0, 1);
@@ -114,13 +124,18 @@ void check_ranges(const Table& table) {
 
 void check_factor_axes(const Table& table, const NdArray& array, std::size_t first_cosine) {
   const auto& axes = array.axes();
-  check_axis_range(axes[0], 1, 5);
-  check_axis_range(axes[1], 0, 1e12);
+  check_parameter(axes[0], "base_ior");
+  check_plain_axis(axes[1], 0, 1e21);
+  for (const Axis& axis : axes) {
+    if (axis.name == "albedo") check_plain_axis(axis, 0, 1);
+    if (axis.name == "fringe_order") check_plain_axis(axis, 0, 1e4);
+  }
   for (std::size_t k = first_cosine; k < axes.size(); k += 2) {
     if (axes[k].name.starts_with("warped_cos"))
       check_ends(axes[k], 0, 1);
     else
       check_axis_range(axes[k], 1e-6, 1);
+    check_period(axes[k], 0);
     check_period(axes[k + 1], 0);
     if (table.symmetry == Symmetry::anisotropic) {
       check_ends(axes[k + 1], 0, kPi / 2);
@@ -130,6 +145,8 @@ void check_factor_axes(const Table& table, const NdArray& array, std::size_t fir
     }
   }
 }
+
+void check_first_visit_axis(const NdArray& first_visit) { check_plain_axis(first_visit.axes()[0], 0, 1000); }
 
 // Look-ups locate wi and wo on the same nodes.
 void check_same_ends(const NdArray& exchange) {

@@ -25,6 +25,8 @@ void check_symmetry(const Table& table);
 void check_ranges(const Table& table);
 // Checks the axes of an array of factors; those from `first_cosine` on are pairs of a cosine and an azimuth.
 void check_factor_axes(const Table& table, const NdArray& array, std::size_t first_cosine);
+// Checks the range of the optical path.
+void check_first_visit_axis(const NdArray& first_visit);
 // Checks that look-ups may locate wi and wo on the same nodes.
 void check_same_ends(const NdArray& exchange);
 

@@ -1,12 +1,14 @@
 #include "runtime/src/table/table_parts.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "runtime/src/table/table_checks.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/factor_frame.h"
 #include "sunbeam/detail/hash.h"
+#include "sunbeam/detail/table_ranges.h"
 #include "sunbeam/detail/text.h"
 
 namespace sunbeam {
@@ -83,25 +85,46 @@ std::vector<double> parse_numbers(const Attributes& attributes, const std::strin
   return numbers;
 }
 
+void require_in(const std::string& key, const std::vector<double>& values, const Interval& allowed) {
+  for (const double value : values)
+    if (!(value >= allowed.low && value <= allowed.high))
+      throw Error("attribute '" + key + "' holds " + to_text(value) + "; allowed: " + to_text(allowed.low) +
+                  " to " + to_text(allowed.high));
+}
+
+constexpr std::array<const char*, 3> kWeightNames = {"spectral.weight_r", "spectral.weight_g",
+                                                     "spectral.weight_b"};
+
+// A bake's weights add up to 1, so that white is white.
+void require_weights(const std::string& key, const std::vector<double>& weights) {
+  constexpr Interval kSum{0.5, 2};
+  require_in(key, weights, {-2, 2});
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  if (!(sum >= kSum.low && sum <= kSum.high))
+    throw Error("attribute '" + key + "' adds up to " + to_text(sum) + "; allowed: " + to_text(kSum.low) +
+                " to " + to_text(kSum.high));
+}
+
 Wavelengths read_wavelengths(const Attributes& attributes) {
   Wavelengths w;
   w.nm = parse_numbers(attributes, "spectral.nm");
   w.albedo = parse_numbers(attributes, "spectral.albedo");
   w.absorption = parse_numbers(attributes, "spectral.absorption");
-  const auto r = parse_numbers(attributes, "spectral.weight_r"),
-             g = parse_numbers(attributes, "spectral.weight_g"),
-             b = parse_numbers(attributes, "spectral.weight_b");
+  const auto r = parse_numbers(attributes, kWeightNames[0]), g = parse_numbers(attributes, kWeightNames[1]),
+             b = parse_numbers(attributes, kWeightNames[2]);
   const std::size_t count = w.nm.size();
   for (const std::size_t size : {w.albedo.size(), w.absorption.size(), r.size(), g.size(), b.size()})
     if (size != count || count > kMostWavelengths)
       throw Error("attributes 'spectral.*' are lists of different lengths, or of more than " +
                   std::to_string(kMostWavelengths));
-  for (std::size_t k = 0; k < count; ++k) {
-    if (!(w.nm[k] >= 1)) throw Error("attribute 'spectral.nm' holds a wavelength below 1 nm");
-    if (!(w.albedo[k] >= 0 && w.albedo[k] <= 1)) throw Error("attribute 'spectral.albedo' leaves 0 to 1");
-    if (!(w.absorption[k] >= 0)) throw Error("attribute 'spectral.absorption' holds a negative number");
-    w.weight.push_back({r[k], g[k], b[k]});
-  }
+  require_in("spectral.nm", w.nm, {300, 1000});
+  require_in("spectral.albedo", w.albedo, {0, 1});
+  for (const double absorption : w.absorption)
+    if (!(absorption >= 0)) throw Error("attribute 'spectral.absorption' holds a negative number");
+  require_in("spectral.absorption", w.absorption, {0, 1e12});
+  const std::vector<double>* const weights[] = {&r, &g, &b};
+  for (int c = 0; c < 3; ++c) require_weights(kWeightNames[c], *weights[c]);
+  for (std::size_t k = 0; k < count; ++k) w.weight.push_back({r[k], g[k], b[k]});
   return w;
 }
 
@@ -109,11 +132,10 @@ void write_wavelengths(const Wavelengths& w, Attributes& attributes) {
   attributes["spectral.nm"] = to_text(w.nm);
   attributes["spectral.albedo"] = to_text(w.albedo);
   attributes["spectral.absorption"] = to_text(w.absorption);
-  const char* const names[] = {"r", "g", "b"};
   for (int c = 0; c < 3; ++c) {
     std::vector<double> weights;
     for (const Rgb& weight : w.weight) weights.push_back(weight[c]);
-    attributes[std::string("spectral.weight_") + names[c]] = to_text(weights);
+    attributes[kWeightNames[c]] = to_text(weights);
   }
 }
 
@@ -145,8 +167,6 @@ Factors read_factors(TableParts& parts, const Table& table) {
   if (table.material.absorption_path == AbsorptionPath::sum) {
     factors.returned = checked_array(parts, "returned", kReturnedAxes, 1);
     check_factor_axes(table, factors.returned, kReturnedAxes.size());
-    for (const float value : factors.returned.values())
-      if (!(value >= 0 && value <= 1)) throw Error("array 'returned' leaves 0 to 1");
   } else {
     factors.exchange = checked_array(parts, "exchange", is_warped ? kWarpedExchangeAxes : kExchangeAxes, 1);
     check_factor_axes(table, factors.exchange, 4);
@@ -180,8 +200,10 @@ void read_spectrum(TableParts& parts, Table& table) {
   if (spectrum == "rgb3") return;
   for (const char* key : {"color_space", "illuminant", "wavelengths"})
     table.info[key] = require(attributes, key);
-  if (!table.is_factored() && table.frame == FrameKind::closed)
+  if (!table.is_factored() && table.frame == FrameKind::closed) {
     table.first_visit = checked_array(parts, "first_visit", kFirstVisitAxes);
+    check_first_visit_axis(table.first_visit);
+  }
   try {
     table.color_space();
   } catch (const Error& error) {
@@ -217,6 +239,11 @@ void check_texts(const Attributes& attributes) {
     if (const std::string& text = require(attributes, key); !parse_whole_number(text, number))
       throw Error("attribute '" + std::string(key) + "' is '" + quoted(text) + "'; allowed: a whole number");
   }
+  if (attributes.count("noise")) {
+    const std::vector<double> noise = parse_numbers(attributes, "noise");
+    if (noise.size() != 1) throw Error("attribute 'noise' is a list; allowed: one number");
+    require_in("noise", noise, {0, 1e6});
+  }
 }
 
 // The arrays of `parts` go into the table, hence the hash before.
@@ -247,6 +274,7 @@ Table build(TableParts& parts) {
   check_texts(parts.attributes);
   for (const char* key : kRequiredInfo) table.info[key] = require(parts.attributes, key);
   read_spectrum(parts, table);
+  require_in_ranges(table);
   for (const auto& [key, value] : parts.attributes)
     if (key.starts_with("error.") || key == "noise" || key == "plan") table.info[key] = value;
   return table;

@@ -195,7 +195,7 @@ TEST(FactoredReader, NamesDefectsOfTheWavelengths) {
         {"more than 64"}},
        {"a wavelength of nothing",
         with_wavelengths([](Wavelengths& w) { w.nm[2] = 0; }),
-        {"'spectral.nm'", "1 nm"}},
+        {"'spectral.nm'", "holds 0;", "300 to 1000"}},
        {"an albedo above 1",
         with_wavelengths([](Wavelengths& w) { w.albedo[1] = 1.5; }),
         {"'spectral.albedo'"}},

@@ -136,6 +136,13 @@ TEST(Axis, DefectsAreNamed) {
   for (const double period : {-1.0, kNan, kInf})
     EXPECT_THAT(plain({0, 1}, 1, period).defect(), HasSubstr("bad period")) << period;
   EXPECT_THAT(plain({0, 2 * kPi}, 1, 2 * kPi).defect(), HasSubstr("beyond its period"));
+  // The coordinates of nodes that differ may be the same, or so near that floats are.
+  EXPECT_THAT(plain({1e18, 1e18 + 200, 2e18}, 2).defect(), HasSubstr("coincide"));
+  EXPECT_THAT(plain({0, 1}, 2, 0, -1e30).defect(), HasSubstr("coincide"));
+  EXPECT_THAT(plain({0, 1e-8, 1}).defect(), HasSubstr("coincide"));
+  EXPECT_THAT(plain({0, 2 * kPi - 1e-9}, 1, 2 * kPi).defect(), HasSubstr("coincide"));
+  EXPECT_EQ(plain({0, 1e-5, 1}).defect(), "");
+  EXPECT_EQ(plain({0, 1e-12, 1}, 3).defect(), "");
   EXPECT_THAT(plain({1, 2}, 2, 0, 1.5).defect(), HasSubstr("between two nodes"));
   EXPECT_EQ(plain({1, 1.5, 2}, 2, 0, 1.5).defect(), "");
   EXPECT_EQ(plain({1, 2}, 2, 0, 3).defect(), "");

@@ -74,5 +74,27 @@ TEST(Text, PrintableShowsControlCharacters) {
   EXPECT_EQ(printable("Zürich, 45°, \xc2\xa0"), "Zürich, 45°, \xc2\xa0");
 }
 
+TEST(Text, WholeNumbersAreDigitsAlone) {
+  std::uint64_t value = 0;
+  EXPECT_TRUE(parse_whole_number("18446744073709551615", value));
+  EXPECT_EQ(value, 18446744073709551615u);
+  EXPECT_TRUE(parse_whole_number("007", value));
+  EXPECT_EQ(value, 7u);
+  for (const char* text : {"", "18446744073709551616", "-1", "+1", " 1", "1 ", "1.0", "1e3", "0x1", "x"})
+    EXPECT_FALSE(parse_whole_number(text, value)) << text;
+}
+
+TEST(Text, PlainTextIsUtf8WithoutControlCharacters) {
+  for (const char* text : {"", "a b\tc\n", "\u00e4\u20ac\U0001f40d\u00a0", "\uffff"})
+    EXPECT_TRUE(is_plain_text(text)) << text;
+  for (const std::string text :
+       {std::string("\0", 1), std::string("\x1b[31m"), std::string("\r"), std::string("\x7f"),
+        std::string("\xc2\x85"),                                                                 // U+0085
+        std::string("\xff"), std::string("\xc3"), std::string("\x80"), std::string("\xe2\x82"),  // cut short
+        std::string("\xc0\xaf"), std::string("\xe0\x80\xaf"), std::string("\xf0\x80\x80\xaf"),   // overlong
+        std::string("\xed\xa0\x80"), std::string("\xf4\x90\x80\x80"), std::string("\xf5\x80\x80\x80")})
+    EXPECT_FALSE(is_plain_text(text)) << printable(text);
+}
+
 }  // namespace
 }  // namespace sunbeam

@@ -5,5 +5,6 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace sunbeam;
-  return test::fuzz(data, size, [](const std::string& bytes) { test::look_up(parse_table_exr(bytes, "t")); });
+  return test::fuzz(data, size,
+                    [](const std::string& bytes) { test::look_up(parse_table_exr(bytes, "t"), bytes); });
 }

@@ -102,6 +102,28 @@ TEST(Exr, ErrorsNameTheFile) {
   EXPECT_EQ(folder.names().size(), 1u);  // the garbage only
 }
 
+TEST(Exr, RefusesToWriteWhatIsNotFinite) {
+  const ScratchFolder folder;
+  const std::string path = folder.file("a.exr");
+  Image broken = numbered(2, 2, 0);
+  broken.set(1, 1, Rgb(1e300));
+  EXPECT_EQ(error_of([&] {
+              write_exr(path, {broken, {}, {}});
+            }),
+            path + ": cannot write the picture: R, G or B holds inf; allowed: finite numbers");
+  EXPECT_NE(error_of([&] {
+              write_exr(path, {numbered(2, 2, 0), broken, {}});
+            }).find("the variance holds inf"),
+            std::string::npos);
+  const std::map<std::string, std::vector<float>> layers{{"depth", {0, 1, 2, std::nanf("")}}};
+  EXPECT_NE(error_of([&] {
+              write_exr(path, {numbered(2, 2, 0), {}, {}, layers});
+            }).find("channel depth holds"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { write_png(path, broken); }).find("it holds inf"), std::string::npos);
+  EXPECT_TRUE(folder.names().empty());
+}
+
 TEST(Exr, TruncatedFileIsAnErrorNotACrash) {
   const ScratchFolder folder;
   const std::string path = folder.file("a.exr");

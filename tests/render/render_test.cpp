@@ -56,17 +56,19 @@ std::string from_above(double fov_deg, int width, int height) {
 // A BSDF whose eval and sample do what they are told.
 class Broken final : public Bsdf {
  public:
-  explicit Broken(bool throws) : throws_(throws) {}
+  explicit Broken(bool throws, double throughput = std::numeric_limits<double>::quiet_NaN())
+      : throws_(throws), throughput_(throughput) {}
   Rgb eval(const Vec3&, const Vec3&, Rng&) const override { return {}; }
   std::optional<BsdfSample> sample(const Vec3&, Rng&) const override {
     if (throws_) throw std::domain_error("broken BSDF");
-    return BsdfSample{{0, 0, 1}, Rgb(std::numeric_limits<double>::quiet_NaN()), false, 0};
+    return BsdfSample{{0, 0, 1}, Rgb(throughput_), false, 0};
   }
   double pdf(const Vec3&, const Vec3&, Rng&) const override { return 0; }
   double mis_pdf(const Vec3&, const Vec3&) const override { return 0; }
 
  private:
   bool throws_;
+  double throughput_;
 };
 
 TEST(Render, BitsDoNotDependOnTheThreadCount) {
@@ -123,6 +125,18 @@ TEST(Render, SamplesThatAreNotFiniteAreCountedAndBlack) {
   EXPECT_GT(result.stats.bad_samples, 0u);
   EXPECT_LT(result.stats.bad_samples, result.stats.samples);  // the sky is fine
   for (const float value : result.mean.rgb) ASSERT_TRUE(std::isfinite(value));
+}
+
+// What is finite as a double may be infinite as a float, and so may its square, which the variance holds.
+TEST(Render, SamplesThatPicturesCannotHoldAreCountedAndBlack) {
+  for (const double throughput : {1e300, 1e39, 1e20, -1e20}) {
+    const RenderResult result = render_with(small_scene(), Broken(false, throughput), {.first_hits = true});
+    EXPECT_GT(result.stats.bad_samples, 0u);
+    EXPECT_LT(result.stats.bad_samples, result.stats.samples);
+    for (const float value : result.mean.rgb) ASSERT_TRUE(std::isfinite(value));
+    for (const float value : result.variance.rgb) ASSERT_TRUE(std::isfinite(value));
+    for (const float value : result.first_hits->albedo.rgb) ASSERT_TRUE(std::isfinite(value));
+  }
 }
 
 TEST(Render, ExceptionsReachTheCaller) {

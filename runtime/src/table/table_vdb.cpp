@@ -100,25 +100,32 @@ void copy_voxels(const Grid& grid, NdArray& array) {
   openvdb::tools::copyToDense(grid, dense);
 }
 
-NdArray to_array(const openvdb::GridBase& base, MemoryClaim& memory) {
-  const auto* colors = dynamic_cast<const openvdb::Vec3SGrid*>(&base);
-  const auto* numbers = dynamic_cast<const openvdb::FloatGrid*>(&base);
-  if (!colors && !numbers)
-    throw Error("grid '" + base.getName() + "' is of type " + base.type() + "; expected vec3s or float");
-  const Attributes attributes = string_attributes(base);
-  const auto precision = attributes.find("precision");
-  if (precision == attributes.end())
-    throw Error("grid '" + base.getName() + "' is not a table array: it has no sunbeam.precision");
-  ArrayShape shape(base.getName(), parse_axes(attributes, base.getName()),
-                   precision->second == "half" ? Precision::half_float : Precision::single_float,
-                   colors ? 3 : 1);
+ArrayShape read_shape(const openvdb::GridBase& grid, std::size_t channels) {
+  const std::string name = grid.getName();
+  const Attributes attributes = string_attributes(grid);
+  const auto at = attributes.find("precision");
+  if (at == attributes.end())
+    throw Error("grid '" + name + "' is not a table array: it has no sunbeam.precision");
+  const std::string& precision = at->second;
+  if (precision != "half" && precision != "float")
+    throw Error("grid '" + name + "': sunbeam.precision is '" + precision + "'; allowed: half, float");
+  return {name, parse_axes(attributes, name),
+          precision == "half" ? Precision::half_float : Precision::single_float, channels};
+}
+
+template <class Grid>
+NdArray to_array(const Grid& grid, MemoryClaim& memory) {
+  ArrayShape shape = read_shape(grid, sizeof(typename Grid::ValueType) / sizeof(float));
   memory.add(shape.cells() * shape.channels() * sizeof(float));
   NdArray array(std::move(shape));
-  if (colors)
-    copy_voxels(*colors, array);
-  else
-    copy_voxels(*numbers, array);
+  copy_voxels(grid, array);
   return array;
+}
+
+NdArray to_array(const openvdb::GridBase& base, MemoryClaim& memory) {
+  if (const auto* colors = dynamic_cast<const openvdb::Vec3SGrid*>(&base)) return to_array(*colors, memory);
+  if (const auto* numbers = dynamic_cast<const openvdb::FloatGrid*>(&base)) return to_array(*numbers, memory);
+  throw Error("grid '" + base.getName() + "' is of type " + base.type() + "; expected vec3s or float");
 }
 
 std::string uuid_from_content(std::string_view bytes) {

@@ -6,7 +6,7 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
-#include <cstring>
+#include <functional>
 #include <limits>
 #include <sstream>
 
@@ -242,38 +242,91 @@ TEST(VdbStructure, AxesBeyondTheLimitOfMemory) {
 }
 
 // As other tools write a table anew: with offsets or without, packed in any way.
-std::string written_anew(const std::string& bytes, std::uint32_t compression, bool as_stream) {
+using Change = std::function<void(openvdb::GridBase&)>;
+
+struct Written {
+  std::uint32_t compression;
+  bool as_stream;
+};
+
+std::string written_anew(const std::string& bytes, const Written& how, const Change& change = {}) {
   std::istringstream in(bytes);
   openvdb::io::Stream read(in, /*delayLoad=*/false);
-  if (as_stream) {
+  const auto grids = read.getGrids();
+  if (change)
+    for (const auto& grid : *grids) change(*grid);
+  if (how.as_stream) {
     std::ostringstream out;
     openvdb::io::Stream stream(out);
-    stream.setCompression(compression);
-    stream.write(*read.getGrids(), *read.getMetadata());
+    stream.setCompression(how.compression);
+    stream.write(*grids, *read.getMetadata());
     return out.str();
   }
   const ScratchFolder folder;
   openvdb::io::File file(folder.file("anew.vdb"));
-  file.setCompression(compression);
-  file.write(*read.getGrids(), *read.getMetadata());
+  file.setCompression(how.compression);
+  file.write(*grids, *read.getMetadata());
   file.close();
   return read_file(folder.file("anew.vdb"));
 }
 
-std::vector<std::uint32_t> compressions() {
-  if (openvdb::io::Archive::hasBloscCompression()) return {0, 1, 2, 3, 4, 6};
-  return {0, 1, 2, 3};
+std::vector<Written> ways_to_write() {
+  std::vector<Written> ways;
+  for (const std::uint32_t compression : {0u, 1u, 2u, 3u, 4u, 6u})
+    if (compression < 4 || openvdb::io::Archive::hasBloscCompression())
+      for (const bool as_stream : {true, false}) ways.push_back({compression, as_stream});
+  return ways;
+}
+
+void expect_read_right(const Table& table, const Change& change = {}) {
+  openvdb::initialize();
+  const std::string bytes = table_vdb_bytes(table);
+  for (const Written& how : ways_to_write())
+    EXPECT_TRUE(parse_table_vdb(written_anew(bytes, how, change), "t") == table)
+        << "compression " << how.compression << (how.as_stream ? ", stream" : ", file");
 }
 
 TEST(VdbStructure, FilesOfOtherToolsAreReadRight) {
-  openvdb::initialize();
   for (const Table& table : {small_factored_table(), test::small_table(), test::small_anisotropic_table(),
                              small_factored_table(0.3, AbsorptionPath::product, Precision::single_float)})
-    for (const std::uint32_t compression : compressions())
-      for (const bool as_stream : {true, false})
-        EXPECT_TRUE(parse_table_vdb(written_anew(table_vdb_bytes(table), compression, as_stream), "t") ==
-                    table)
-            << compression << as_stream;
+    expect_read_right(table);
+}
+
+// Equal values fill whole nodes and are stored once, in the node above.
+TEST(VdbStructure, TilesAreReadRight) {
+  std::vector<double> nodes;
+  for (int k = 1; k <= 16; ++k) nodes.push_back(k / 16.0);
+  auto axes = test::small_rest_axes();
+  axes[0] = test::axis("film_thickness_nm", nodes);
+  axes[3] = test::axis("cos_theta_i", nodes);
+  axes[5] = test::axis("cos_theta_o", nodes);
+  for (const Precision precision : {Precision::half_float, Precision::single_float}) {
+    Table table = test::small_table(precision);
+    table.remainder = NdArray("remainder", axes, precision);
+    table.rest_stderr = NdArray("rest_stderr", axes, precision, 1);
+    std::ranges::fill(table.remainder.values(), 0.25f);
+    std::ranges::fill(table.rest_stderr.values(), 0.125f);
+    expect_read_right(table);
+  }
+}
+
+// Values that are not active are stored in other ways, depending on how many differ.
+TEST(VdbStructure, InactiveValuesAreReadRight) {
+  for (const Precision precision : {Precision::half_float, Precision::single_float})
+    for (const int count : {1, 2, 3})
+      for (const bool has_zero : {false, true}) {
+        Table table = small_factored_table(0.3, AbsorptionPath::sum, precision);
+        for (NdArray* array : {&table.factors.arrival, &table.factors.returned})
+          for (float& value : array->values())
+            if (value == 0 && !has_zero) value = 0.5f;
+        expect_read_right(table, [&](openvdb::GridBase& grid) {
+          auto& tree = dynamic_cast<openvdb::FloatGrid&>(grid).tree();
+          for (auto leaf = tree.beginLeaf(); leaf; ++leaf) {
+            int left = count;
+            for (auto value = leaf->beginValueOn(); value && left > 0; ++value, --left) value.setValueOff();
+          }
+        });
+      }
 }
 
 // Offsets, and Blosc's own header, in which the library trusts.
@@ -281,7 +334,7 @@ TEST(VdbStructure, FieldsOfOtherTools) {
   openvdb::initialize();
   if (!openvdb::io::Archive::hasBloscCompression()) GTEST_SKIP() << "OpenVDB has no Blosc here";
   const OneGrid good;
-  const std::string anew = written_anew(good.bytes(), 6, false);
+  const std::string anew = written_anew(good.bytes(), {6, false});
   const std::size_t offsets = anew.find(OneGrid::kType) + 16 + 4;
   for (const std::size_t which : {0u, 1u, 2u}) {
     std::string bytes = anew;

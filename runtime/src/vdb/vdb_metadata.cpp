@@ -1,7 +1,7 @@
 #include "runtime/src/vdb/vdb_metadata.h"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 #include <utility>
 
 #include "runtime/src/vdb/vdb_blocks.h"
@@ -15,22 +15,11 @@ constexpr std::uint32_t kMostEntries = 10000, kLongestName = 1000;
 constexpr std::uint64_t kLongestText = 16000000;  // of all texts of a list
 
 // The library reads these sizes whatever the file states.
-constexpr std::array<std::pair<std::string_view, std::uint32_t>, 16> kSizes = {{{"bool", 1},
-                                                                                {"int32", 4},
-                                                                                {"int64", 8},
-                                                                                {"float", 4},
-                                                                                {"double", 8},
-                                                                                {"vec2i", 8},
-                                                                                {"vec2s", 8},
-                                                                                {"vec2d", 16},
-                                                                                {"vec3i", 12},
-                                                                                {"vec3s", 12},
-                                                                                {"vec3d", 24},
-                                                                                {"vec4i", 16},
-                                                                                {"vec4s", 16},
-                                                                                {"vec4d", 32},
-                                                                                {"mat4s", 64},
-                                                                                {"mat4d", 128}}};
+constexpr std::pair<std::string_view, std::uint32_t> kSizes[] = {
+    {"bool", 1},   {"int32", 4},  {"int64", 8},  {"float", 4},   {"double", 8}, {"vec2i", 8},
+    {"vec2s", 8},  {"vec2d", 16}, {"vec3i", 12}, {"vec3s", 12},  {"vec3d", 24}, {"vec4i", 16},
+    {"vec4s", 16}, {"vec4d", 32}, {"mat4s", 64}, {"mat4d", 128},
+};
 
 // One of the two lists of "delayed load", plain or packed. The library pads short ones before it packs them.
 void check_leaf_list(ByteCursor& in, std::uint32_t packed, std::uint64_t bytes) {
@@ -41,7 +30,8 @@ void check_leaf_list(ByteCursor& in, std::uint32_t packed, std::uint64_t bytes) 
     in.take(bytes, "a list of leaf nodes");
 }
 
-// What the library writes to find leaf nodes later on. Returns the bytes of memory that it takes.
+// What the library writes to find leaf nodes later on. It keeps three copies while it reads. Returns the
+// bytes of memory that they take.
 std::uint64_t check_delayed_load(std::string_view value) {
   if (value.empty()) return 0;
   constexpr std::uint32_t kNoSizes = 0xffffffff;
@@ -52,7 +42,7 @@ std::uint64_t check_delayed_load(std::string_view value) {
   if (packed != kNoSizes) check_leaf_list(in, packed, 8 * leaves);
   if (in.left() > 0)
     throw Error("a list of leaf nodes is followed by " + std::to_string(in.left()) + " bytes");
-  return 9 * leaves;
+  return 3 * (1 + 8) * leaves;
 }
 
 bool truth_of(std::string_view value) {
@@ -62,9 +52,9 @@ bool truth_of(std::string_view value) {
 }
 
 void require_size(std::string_view type, std::size_t size) {
-  const auto* known =
-      std::find_if(kSizes.begin(), kSizes.end(), [&](const auto& entry) { return entry.first == type; });
-  if (known == kSizes.end())
+  const auto* known = std::find_if(std::begin(kSizes), std::end(kSizes),
+                                   [&](const auto& entry) { return entry.first == type; });
+  if (known == std::end(kSizes))
     throw Error("its type '" + printable(type) + "' is not one that OpenVDB itself has");
   if (size != known->second)
     throw Error("its type " + std::string(type) + " takes " + std::to_string(known->second) +

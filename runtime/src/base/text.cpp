@@ -32,6 +32,14 @@ std::size_t bytes_of_character(std::string_view text) {
   return is_sound ? count : 0;
 }
 
+// Tells numbers that are too small for a double from those that are too large.
+bool is_tiny(std::string_view number) {
+  const auto exponent = number.find_first_of("eE");
+  if (exponent != std::string_view::npos) return number.substr(exponent + 1).starts_with('-');
+  if (number.starts_with('-')) number.remove_prefix(1);
+  return number.starts_with('0') || number.starts_with('.');
+}
+
 }  // namespace
 
 std::string to_text(double value) {
@@ -54,7 +62,12 @@ bool parse_number(std::string_view text, double& value) {
   while (!text.empty() && (text.back() == ' ' || text.back() == '\r')) text.remove_suffix(1);
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-  return result.ec == std::errc() && result.ptr == text.data() + text.size();
+  if (result.ptr != text.data() + text.size()) return false;
+  if (result.ec == std::errc::result_out_of_range && is_tiny(text)) {
+    value = 0;
+    return true;
+  }
+  return result.ec == std::errc();
 }
 
 bool parse_whole_number(std::string_view text, std::uint64_t& value) {
@@ -112,6 +125,11 @@ std::string printable(std::string_view text) {
     }
   }
   return result;
+}
+
+std::string excerpt(std::string_view text) {
+  constexpr std::size_t kMost = 60;
+  return printable(text.substr(0, kMost)) + (text.size() > kMost ? "..." : "");
 }
 
 }  // namespace v1

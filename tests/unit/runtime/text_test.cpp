@@ -47,6 +47,21 @@ TEST(Text, ParseTakesTheWholeTextOrNothing) {
     EXPECT_FALSE(parse_number(bad, value)) << bad;
 }
 
+TEST(Text, ANumberTooSmallForADoubleIsZero) {
+  for (const char* tiny : {"1e-400", "-2.5E-9999", "0.1e-400", "+1e-400"}) {
+    double value = 1;
+    EXPECT_TRUE(parse_number(tiny, value)) << tiny;
+    EXPECT_EQ(value, 0) << tiny;
+  }
+  double value = 1;
+  EXPECT_TRUE(parse_number("0." + std::string(400, '0') + "1", value));
+  EXPECT_EQ(value, 0);
+  EXPECT_TRUE(parse_number("1e-310", value));
+  EXPECT_EQ(value, 1e-310);
+  for (const std::string& large : {std::string("1e400"), std::string("-1e+400"), "1" + std::string(400, '0')})
+    EXPECT_FALSE(parse_number(large, value)) << large;
+}
+
 // "+-1" is no number in any notation.
 TEST(Text, ParseRefusesTwoSigns) {
   double value = 0;
@@ -94,6 +109,12 @@ TEST(Text, PlainTextIsUtf8WithoutControlCharacters) {
         std::string("\xc0\xaf"), std::string("\xe0\x80\xaf"), std::string("\xf0\x80\x80\xaf"),   // overlong
         std::string("\xed\xa0\x80"), std::string("\xf4\x90\x80\x80"), std::string("\xf5\x80\x80\x80")})
     EXPECT_FALSE(is_plain_text(text)) << printable(text);
+}
+
+TEST(Text, AnExcerptIsShortAndPrintable) {
+  EXPECT_EQ(excerpt("a\nb"), "a\\nb");
+  EXPECT_EQ(excerpt(std::string(60, 'x')), std::string(60, 'x'));
+  EXPECT_EQ(excerpt(std::string(61, 'x')), std::string(60, 'x') + "...");
 }
 
 }  // namespace

@@ -13,7 +13,8 @@ inline namespace v1 {
 std::string to_text(double value);
 std::string to_text(const std::vector<double>& values);  // separated by single spaces
 
-// Reads a number, which must be the whole text ("nan" and "inf" parse). Returns false if it is not.
+// Reads a number, which must be the whole text ("nan" and "inf" parse). One that is too small for a double is
+// 0. Returns false if it is not a number or too large.
 bool parse_number(std::string_view text, double& value);
 
 // Reads a whole number of decimal digits alone, which must be the whole text. Returns false if it is not, or
@@ -31,6 +32,9 @@ std::string printable(std::string_view text);
 
 // Returns whether a text is UTF-8 without control characters other than line feeds and tabs.
 bool is_plain_text(std::string_view text);
+
+// Returns the same of the first 60 bytes, and "..." if there are more.
+std::string excerpt(std::string_view text);
 
 }  // namespace v1
 }  // namespace sunbeam

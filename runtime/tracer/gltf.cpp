@@ -2,321 +2,212 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <cstring>
 #include <filesystem>
-#include <limits>
-#include <nlohmann/json.hpp>
+#include <utility>
 
+#include "runtime/tracer/affine.h"
+#include "runtime/tracer/gltf_document.h"
+#include "runtime/tracer/gltf_nodes.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/file.h"
 
 namespace sunbeam {
 namespace {
 
-using Json = nlohmann::json;
+Vec3 triple(const std::vector<double>& v, std::size_t i) { return {v[3 * i], v[3 * i + 1], v[3 * i + 2]}; }
 
-std::uint32_t word(const std::string& bytes, std::size_t at) {
-  if (at + 4 > bytes.size()) throw Error("ends too early");
-  std::uint32_t value;
-  std::memcpy(&value, bytes.data() + at, 4);
-  return value;
-}
-
-std::string from_base64(std::string_view text) {
-  static constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes;
-  std::uint32_t bits = 0;
-  int count = 0;
-  for (const char c : text) {
-    if (c == '=') break;
-    const auto digit = kDigits.find(c);
-    if (digit == std::string_view::npos) throw Error("a buffer's base64 text has a wrong letter");
-    bits = bits << 6 | static_cast<std::uint32_t>(digit);
-    count += 6;
-    if (count >= 8) bytes += static_cast<char>(bits >> (count -= 8) & 255);
+// The maps of the vertices of a primitive: one for all, or one for each.
+class VertexMaps {
+ public:
+  explicit VertexMaps(std::vector<Affine> maps) : maps_(std::move(maps)) {
+    for (const Affine& map : maps_) is_mirrored_.push_back(map.determinant() < 0);
   }
-  return bytes;
-}
+  const Affine& operator[](std::size_t vertex) const { return maps_[place(vertex)]; }
+  bool is_mirrored(std::size_t vertex) const { return is_mirrored_[place(vertex)]; }
 
-// A column-major 4 x 4 matrix of glTF, without its last row: x -> linear x + offset.
-struct Affine {
-  std::array<Vec3, 3> columns = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
-  Vec3 offset = {};
+ private:
+  std::size_t place(std::size_t vertex) const { return maps_.size() == 1 ? 0 : vertex; }
 
-  Vec3 linear(const Vec3& v) const { return v.x * columns[0] + v.y * columns[1] + v.z * columns[2]; }
-  Vec3 point(const Vec3& p) const { return linear(p) + offset; }
-  double determinant() const { return dot(columns[0], cross(columns[1], columns[2])); }
-  // By the cofactors, which are the inverse transpose up to a factor; turned back where the matrix mirrors.
-  Vec3 normal(const Vec3& n) const {
-    const Vec3 turned = n.x * cross(columns[1], columns[2]) + n.y * cross(columns[2], columns[0]) +
-                        n.z * cross(columns[0], columns[1]);
-    return determinant() < 0 ? -turned : turned;
-  }
-  Affine operator*(const Affine& inner) const {
-    return {{linear(inner.columns[0]), linear(inner.columns[1]), linear(inner.columns[2])},
-            point(inner.offset)};
-  }
+  std::vector<Affine> maps_;
+  std::vector<bool> is_mirrored_;
 };
 
-std::vector<double> numbers(const Json& node, const char* key, std::size_t count) {
-  const auto values = node.at(key).get<std::vector<double>>();
-  if (values.size() != count)
-    throw Error(fmt::format("{} has {} numbers; allowed: {}", key, values.size(), count));
-  return values;
-}
-
-Affine rotation(double x, double y, double z, double w) {
-  return {{Vec3{1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)},
-           Vec3{2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)},
-           Vec3{2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)}}};
-}
-
-Affine matrix_of(const Json& node) {
-  Affine result;
-  if (node.contains("matrix")) {
-    const auto m = numbers(node, "matrix", 16);
-    return {{Vec3{m[0], m[1], m[2]}, Vec3{m[4], m[5], m[6]}, Vec3{m[8], m[9], m[10]}}, {m[12], m[13], m[14]}};
-  }
-  if (node.contains("rotation")) {
-    const auto q = numbers(node, "rotation", 4);
-    result = rotation(q[0], q[1], q[2], q[3]);
-  }
-  if (node.contains("scale")) {
-    const auto s = numbers(node, "scale", 3);
-    for (std::size_t i = 0; i < 3; ++i) result.columns[i] = s[i] * result.columns[i];
-  }
-  if (node.contains("translation")) {
-    const auto t = numbers(node, "translation", 3);
-    result.offset = {t[0], t[1], t[2]};
-  }
-  return result;
-}
-
-class Document {
+class GltfReader {
  public:
-  explicit Document(const std::string& path) : folder_(std::filesystem::path(path).parent_path()) {
-    const std::string bytes = read_file(path);
-    if (bytes.starts_with("glTF"))
-      split_glb(bytes);
-    else
-      json_ = Json::parse(bytes);
-    if (json_.at("asset").at("version").get<std::string>().substr(0, 2) != "2.")
-      throw Error("is not of version 2");
-    if (json_.contains("buffers"))
-      for (const Json& buffer : json_["buffers"]) buffers_.push_back(read_buffer(buffer));
-  }
+  GltfReader(std::string_view bytes, const std::string& path, std::vector<std::string> folders)
+      : path_(path), document_(bytes, std::move(folders)), nodes_(place_nodes(document_)) {}
 
   Mesh mesh() {
-    for (const std::size_t root : roots()) add_node(root, {}, 0);
+    for (const std::size_t index : nodes_.order) {
+      const Json& node = document_.entry("nodes", index);
+      if (!node.contains("mesh")) continue;
+      const Json& mesh = document_.entry("meshes", node["mesh"]);
+      const Json& weights = node.contains("weights") ? node : mesh;
+      for (const Json& primitive : required(mesh, "primitives")) add_primitive(primitive, weights, index);
+    }
     if (!has_normals_) mesh_.normals.clear();
     if (!has_uvs_) mesh_.uvs.clear();
     return std::move(mesh_);
   }
 
  private:
-  void split_glb(const std::string& bytes) {
-    constexpr std::uint32_t kJson = 0x4e4f534a;
-    const std::size_t json_size = word(bytes, 12);
-    if (word(bytes, 4) != 2 || word(bytes, 16) != kJson || word(bytes, 8) > bytes.size() ||
-        20 + json_size > bytes.size())
-      throw Error("its header is damaged or the file is cut short");
-    json_ = Json::parse(bytes.substr(20, json_size));
-    const std::size_t binary = 20 + json_size;
-    if (binary == bytes.size()) return;
-    const std::size_t size = word(bytes, binary);
-    if (binary + 8 + size > bytes.size()) throw Error("the file is cut short");
-    binary_ = bytes.substr(binary + 8, size);
-  }
+  enum Mode { kTriangles = 4, kStrip = 5, kFan = 6 };
 
-  std::string read_buffer(const Json& buffer) const {
-    std::string bytes = binary_;
-    if (buffer.contains("uri")) {
-      const auto uri = buffer["uri"].get<std::string>();
-      const auto comma = uri.find(";base64,");
-      if (uri.starts_with("data:") && comma == std::string::npos) throw Error("a data URI is not base64");
-      bytes = uri.starts_with("data:") ? from_base64(std::string_view(uri).substr(comma + 8))
-                                       : read_file((folder_ / uri).string());
-    }
-    if (buffer.at("byteLength").get<std::size_t>() > bytes.size())
-      throw Error(fmt::format("a buffer has {} bytes, fewer than byteLength says", bytes.size()));
-    return bytes;
-  }
-
-  const Json& entry(const char* list, std::size_t index) const {
-    const Json& entries = json_.at(list);
-    if (index >= entries.size())
-      throw Error(
-          fmt::format("{} index {}; allowed: 0 to {}", list, index, static_cast<long>(entries.size()) - 1));
-    return entries[index];
-  }
-
-  std::vector<std::size_t> roots() const {
-    if (json_.contains("scenes")) {
-      const Json& scene = entry("scenes", json_.value("scene", std::size_t{0}));
-      return scene.value("nodes", std::vector<std::size_t>{});
-    }
-    std::vector<std::size_t> all;
-    for (std::size_t i = 0; json_.contains("nodes") && i < json_["nodes"].size(); ++i) all.push_back(i);
-    for (const std::size_t parent : std::vector<std::size_t>(all))
-      for (const std::size_t child : entry("nodes", parent).value("children", std::vector<std::size_t>{}))
-        std::erase(all, child);
-    return all;
-  }
-
-  void add_node(std::size_t index, const Affine& parent, int depth) {
-    constexpr int kMaxDepth = 1000;  // the stack bears far more
-    if (depth > kMaxDepth) throw Error(fmt::format("nodes are nested deeper than {}", kMaxDepth));
-    const Json& node = entry("nodes", index);
-    if (visited_.size() <= index) visited_.resize(index + 1);
-    if (visited_[index]) throw Error(fmt::format("node {} is met twice; nodes must form trees", index));
-    visited_[index] = true;
-    const Affine matrix = parent * matrix_of(node);
-    if (node.contains("mesh"))
-      for (const Json& primitive : entry("meshes", node["mesh"].get<std::size_t>()).at("primitives"))
-        add_primitive(primitive, matrix);
-    for (const std::size_t child : node.value("children", std::vector<std::size_t>{}))
-      add_node(child, matrix, depth + 1);
-  }
-
-  void add_primitive(const Json& primitive, const Affine& matrix) {
-    constexpr int kTriangles = 4;
-    const int mode = primitive.value("mode", kTriangles);
+  void add_primitive(const Json& primitive, const Json& weights, std::size_t node) {
+    constexpr std::size_t kNumbersOfAny = 16;
+    document_.count_numbers(kNumbersOfAny);
+    const std::size_t mode = natural(primitive, "mode", kTriangles);
     if (mode < kTriangles) return;  // points and lines
-    if (mode > kTriangles) throw Error(fmt::format("found mode {}; allowed: 4, triangles", mode));
+    if (mode > kFan) throw Error(fmt::format("found mode {}; allowed: 0 to {}", mode, int{kFan}));
     if (primitive.contains("extensions") && primitive["extensions"].contains("KHR_draco_mesh_compression"))
       throw Error("is compressed (KHR_draco_mesh_compression); allowed: plain meshes");
-    const Json& attributes = primitive.at("attributes");
-    const auto positions = values(attributes.at("POSITION").get<std::size_t>(), 3);
-    const auto optional = [&](const char* name, std::size_t components) {
-      auto found = attributes.contains(name) ? values(attributes[name].get<std::size_t>(), components)
-                                             : std::vector<double>();
-      if (!found.empty() && found.size() / components != positions.size() / 3)
-        throw Error(fmt::format("{} and POSITION have different counts", name));
-      return found;
-    };
-    const auto normals = optional("NORMAL", 3), uvs = optional("TEXCOORD_0", 2);
-    has_normals_ = has_normals_ && !normals.empty();
-    has_uvs_ = has_uvs_ && !uvs.empty();
+    required(required(primitive, "attributes"), "POSITION");
+    const auto positions = attribute(primitive, weights, "POSITION", "VEC3"),
+               normals = attribute(primitive, weights, "NORMAL", "VEC3"),
+               uvs = attribute(primitive, weights, "TEXCOORD_0", "VEC2");
     const std::size_t first = mesh_.positions.size(), count = positions.size() / 3;
-    const auto triple = [](const std::vector<double>& v, std::size_t i) {
-      return Vec3{v[3 * i], v[3 * i + 1], v[3 * i + 2]};
-    };
+    if ((!normals.empty() && normals.size() != 3 * count) || (!uvs.empty() && uvs.size() != 2 * count))
+      throw Error("the attributes of a primitive have different counts");
+    require_mesh_memory(path_, first + count, mesh_.triangles.size(), document_.file_bytes());
+    has_normals_ = has_normals_ && normals.size() == 3 * count;
+    has_uvs_ = has_uvs_ && uvs.size() == 2 * count;
+    const VertexMaps maps = vertex_maps(primitive, node, count);
     for (std::size_t i = 0; i < count; ++i) {
-      mesh_.positions.push_back(matrix.point(triple(positions, i)));
-      if (has_normals_) mesh_.normals.push_back(matrix.normal(triple(normals, i)));
+      mesh_.positions.push_back(maps[i].point(triple(positions, i)));
+      if (has_normals_) mesh_.normals.push_back(mapped_normal(maps[i], triple(normals, i)));
       if (has_uvs_) mesh_.uvs.push_back({uvs[2 * i], 1 - uvs[2 * i + 1]});  // glTF's v points down
     }
-    add_triangles(primitive, first, count, matrix.determinant() < 0);
+    add_triangles(corners(primitive, count), mode, first, maps);
   }
 
-  void add_triangles(const Json& primitive, std::size_t first, std::size_t count, bool mirrored) {
-    std::vector<double> indices;
-    if (primitive.contains("indices"))
-      indices = values(primitive["indices"].get<std::size_t>(), 1);
-    else
-      for (std::size_t i = 0; i < count; ++i) indices.push_back(static_cast<double>(i));
-    for (const double index : indices)
-      if (!(index >= 0 && index < static_cast<double>(count)))
-        throw Error(fmt::format("face index {:g}; allowed: 0 to {}", index, static_cast<long>(count) - 1));
-    const auto corner = [&](std::size_t i) {
-      return static_cast<std::uint32_t>(first + static_cast<std::size_t>(indices[i]));
-    };
-    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-      mesh_.triangles.push_back({corner(i), corner(i + 1), corner(i + 2)});
-      if (mirrored) std::swap(mesh_.triangles.back()[1], mesh_.triangles.back()[2]);
+  // Where a map is flat, triangles without area are left that need no normal.
+  static Vec3 mapped_normal(const Affine& map, const Vec3& normal) {
+    const Vec3 mapped = map.normal(normal);
+    return map.determinant() == 0 && length(mapped) == 0 ? Vec3{0, 0, 1} : mapped;
+  }
+
+  // The numbers of an attribute, morph targets added; {} if the primitive has none.
+  std::vector<double> attribute(const Json& primitive, const Json& weights, const char* name,
+                                const char* type) {
+    const Json& attributes = primitive["attributes"];
+    if (!attributes.contains(name)) return {};
+    std::vector<double> result = document_.values(attributes[name], type);
+    if (!primitive.contains("targets") || !weights.contains("weights")) return result;
+    const Json& targets = primitive["targets"];
+    const auto target_weights = numbers(weights, "weights", targets.size());
+    document_.count_numbers(targets.size());
+    for (std::size_t k = 0; k < target_weights.size(); ++k) {
+      if (target_weights[k] == 0 || !targets[k].contains(name)) continue;
+      const std::vector<double> shift = document_.values(targets[k][name], type);
+      if (shift.size() != result.size()) throw Error("a morph target has another count than its attribute");
+      for (std::size_t i = 0; i < shift.size(); ++i) result[i] += target_weights[k] * shift[i];
     }
-  }
-
-  // All numbers of an accessor of `components` to an entry.
-  std::vector<double> values(std::size_t index, std::size_t components) const {
-    static constexpr std::array<const char*, 4> kTypes = {"SCALAR", "VEC2", "VEC3", "VEC4"};
-    const Json& accessor = entry("accessors", index);
-    if (accessor.at("type").get<std::string>() != kTypes[components - 1])
-      throw Error(fmt::format("accessor {} has the type {}; allowed: {}", index,
-                              accessor.at("type").get<std::string>(), kTypes[components - 1]));
-    if (accessor.contains("sparse") || !accessor.contains("bufferView"))
-      throw Error(fmt::format("accessor {} is sparse or has no data; allowed: plain ones", index));
-    const Json& view = entry("bufferViews", accessor["bufferView"].get<std::size_t>());
-    const auto buffer = view.at("buffer").get<std::size_t>();
-    if (buffer >= buffers_.size()) throw Error(fmt::format("buffer index {} is out of range", buffer));
-    const int type = accessor.at("componentType").get<int>();
-    const std::size_t size = component_size(type) * components;
-    const auto stride = view.value("byteStride", size), count = accessor.at("count").get<std::size_t>();
-    const auto view_size = view.at("byteLength").get<std::size_t>(),
-               view_at = view.value("byteOffset", std::size_t{0});
-    const auto at = accessor.value("byteOffset", std::size_t{0});
-    constexpr std::size_t kMost = std::size_t{1} << 40;  // no sum or product below overflows
-    if (count > kMost || stride < size || stride > 252 || at > kMost || view_size > kMost ||
-        view_at > kMost || view_at + view_size > buffers_[buffer].size() ||
-        (count > 0 && at + (count - 1) * stride + size > view_size))
-      throw Error(fmt::format("accessor {} reaches beyond its buffer", index));
-    std::vector<double> result;
-    const bool normalized = accessor.value("normalized", false);
-    for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t k = 0; k < components; ++k)
-        result.push_back(
-            component(buffers_[buffer].data() + view_at + at + i * stride + k * component_size(type), type,
-                      normalized));
     return result;
   }
 
-  static std::size_t component_size(int type) {
-    switch (type) {
-      case 5120:
-      case 5121:
-        return 1;
-      case 5122:
-      case 5123:
-        return 2;
-      case 5125:
-      case 5126:
-        return 4;
-      default:
-        throw Error(fmt::format("found componentType {}; allowed: 5120 to 5123, 5125, 5126", type));
+  // A skinned mesh follows its joints alone, whatever the matrix of its node.
+  VertexMaps vertex_maps(const Json& primitive, std::size_t node, std::size_t count) {
+    const Json& json = document_.entry("nodes", node);
+    if (!json.contains("skin")) return VertexMaps({*nodes_.to_world[node]});
+    const std::vector<Affine> joints = joint_maps(document_.entry("skins", json["skin"]));
+    const Json& attributes = primitive["attributes"];
+    std::vector<Affine> maps(count, Affine{{Vec3{}, Vec3{}, Vec3{}}, {}});
+    std::vector<double> sums(count);
+    for (int set = 0;; ++set) {
+      const std::string joints_name = fmt::format("JOINTS_{}", set),
+                        weights_name = fmt::format("WEIGHTS_{}", set);
+      if (set > 0 && !attributes.contains(joints_name)) break;
+      const auto places =
+          document_.indices("joint", required(attributes, joints_name.c_str()), "VEC4", joints.size());
+      const auto weights = document_.values(required(attributes, weights_name.c_str()), "VEC4");
+      if (places.size() != 4 * count || weights.size() != 4 * count)
+        throw Error(fmt::format("{} or {} has another count than POSITION", joints_name, weights_name));
+      for (std::size_t i = 0; i < 4 * count; ++i) {
+        if (weights[i] < 0)
+          throw Error(fmt::format("found the joint weight {:g}; allowed: 0 up", weights[i]));
+        maps[i / 4].add(weights[i], joints[places[i]]);
+        sums[i / 4] += weights[i];
+      }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!(sums[i] > 0))
+        throw Error(fmt::format("the joint weights of vertex {} add up to {:g}", i, sums[i]));
+      maps[i] = scaled(1 / sums[i], maps[i]);
+    }
+    return VertexMaps(std::move(maps));
+  }
+
+  static Affine scaled(double factor, const Affine& map) {
+    Affine result{{Vec3{}, Vec3{}, Vec3{}}, {}};
+    result.add(factor, map);
+    return result;
+  }
+
+  std::vector<Affine> joint_maps(const Json& skin) {
+    constexpr std::size_t kNumbersOfMap = 12;
+    const auto joints = naturals(skin, "joints");
+    document_.count_numbers(kNumbersOfMap * joints.size());
+    std::vector<double> inverse;
+    if (skin.contains("inverseBindMatrices")) {
+      inverse = document_.values(skin["inverseBindMatrices"], "MAT4");
+      if (inverse.size() < 16 * joints.size())
+        throw Error(fmt::format("a skin has {} joints and {} inverse bind matrices", joints.size(),
+                                inverse.size() / 16));
+    }
+    std::vector<Affine> maps;
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      if (joints[k] >= nodes_.to_world.size() || !nodes_.to_world[joints[k]])
+        throw Error(fmt::format("joint {} is no node of the scene", joints[k]));
+      const Affine& to_world = *nodes_.to_world[joints[k]];
+      maps.push_back(inverse.empty() ? to_world : to_world * affine_of(&inverse[16 * k]));
+    }
+    return maps;
+  }
+
+  std::vector<std::uint32_t> corners(const Json& primitive, std::size_t count) {
+    if (primitive.contains("indices"))
+      return document_.indices("face", primitive["indices"], "SCALAR", count);
+    std::vector<std::uint32_t> all(count);
+    for (std::size_t i = 0; i < count; ++i) all[i] = static_cast<std::uint32_t>(i);
+    return all;
+  }
+
+  void add_triangles(const std::vector<std::uint32_t>& corners, std::size_t mode, std::size_t first,
+                     const VertexMaps& maps) {
+    const std::size_t step = mode == kTriangles ? 3 : 1;
+    require_mesh_memory(path_, mesh_.positions.size(), mesh_.triangles.size() + corners.size() / step,
+                        document_.file_bytes());
+    if (mode == kTriangles && corners.size() % 3 != 0)
+      throw Error(fmt::format("found triangles of {} corners; allowed: a multiple of 3", corners.size()));
+    const auto vertex = [&](std::uint32_t i) { return static_cast<std::uint32_t>(first + i); };
+    for (std::size_t i = 0; i + 2 < corners.size(); i += step) {
+      const bool is_odd = mode == kStrip && i % 2 == 1;
+      const std::uint32_t a = corners[mode == kFan ? 0 : i], b = corners[i + (is_odd ? 2 : 1)],
+                          c = corners[i + (is_odd ? 1 : 2)];
+      if (mode != kTriangles && (a == b || b == c || c == a)) continue;  // joins strips
+      const bool is_mirrored = maps.is_mirrored(a);
+      mesh_.triangles.push_back({vertex(a), vertex(is_mirrored ? c : b), vertex(is_mirrored ? b : c)});
     }
   }
 
-  template <class T>
-  static double integer(const char* bytes, bool normalized) {
-    T value;
-    std::memcpy(&value, bytes, sizeof(T));
-    return normalized ? std::max(-1.0, static_cast<double>(value) /
-                                           static_cast<double>(std::numeric_limits<T>::max()))
-                      : static_cast<double>(value);
-  }
-  static double component(const char* bytes, int type, bool normalized) {
-    switch (type) {
-      case 5120:
-        return integer<std::int8_t>(bytes, normalized);
-      case 5121:
-        return integer<std::uint8_t>(bytes, normalized);
-      case 5122:
-        return integer<std::int16_t>(bytes, normalized);
-      case 5123:
-        return integer<std::uint16_t>(bytes, normalized);
-      case 5125:
-        return integer<std::uint32_t>(bytes, normalized);
-      default:
-        return integer<float>(bytes, false);
-    }
-  }
-
-  std::filesystem::path folder_;
-  Json json_;
-  std::string binary_;  // of a .glb
-  std::vector<std::string> buffers_;
-  std::vector<bool> visited_;
+  const std::string& path_;
+  GltfDocument document_;
+  GltfNodes nodes_;
   bool has_normals_ = true, has_uvs_ = true;
   Mesh mesh_;
 };
 
 }  // namespace
 
-LoadedMesh load_gltf(const std::string& path) {
+LoadedMesh load_gltf(const std::string& path, const std::string& folder) {
+  std::vector<std::string> folders = {std::filesystem::path(path).parent_path().string()};
+  if (!folder.empty()) folders.push_back(folder);
+  return parse_gltf(read_file(path), path, std::move(folders));
+}
+
+LoadedMesh parse_gltf(std::string_view bytes, const std::string& path, std::vector<std::string> folders) {
   try {
-    return checked_mesh(path, Document(path).mesh());
+    return checked_mesh(path, GltfReader(bytes, path, std::move(folders)).mesh());
   } catch (const std::exception& error) {  // of the JSON library too
     const std::string message = error.what();
     throw Error(message.starts_with(path) ? message : path + ": not a valid glTF file: " + message);

@@ -14,7 +14,7 @@ namespace {
 std::string obj_text(const Mesh& mesh) {
   std::string text;
   const auto out = std::back_inserter(text);
-  const auto f = [](double x) { return static_cast<float>(x); };  // what readers keep
+  const auto f = [](double x) { return static_cast<float>(x); };  // as in PLY
   for (const Vec3& p : mesh.positions) fmt::format_to(out, "v {} {} {}\n", f(p.x), f(p.y), f(p.z));
   for (const Point2& uv : mesh.uvs) fmt::format_to(out, "vt {} {}\n", f(uv.x), f(uv.y));
   for (const Vec3& n : mesh.normals) fmt::format_to(out, "vn {} {} {}\n", f(n.x), f(n.y), f(n.z));

@@ -1,155 +1,224 @@
 #include "runtime/tracer/obj.h"
 
 #include <fmt/format.h>
-#include <tiny_obj_loader.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstdlib>
-#include <cstring>
-#include <sstream>
-#include <string_view>
+#include <limits>
 
+#include "runtime/tracer/polygon.h"
 #include "sunbeam/core/error.h"
+#include "sunbeam/core/read_limit.h"
 #include "sunbeam/detail/file.h"
+#include "sunbeam/detail/text.h"
 
 namespace sunbeam {
 namespace {
 
-// The loader reads a number it does not understand (nan, inf, letters) as 0 and drops faces with bad indices,
-// both in silence. This pass over the text refuses them first.
-class ObjCheck {
- public:
-  explicit ObjCheck(const std::string& path) : path_(path) {}
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-  void check(const std::string& text) {
-    std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);) {
-      ++line_number_;
-      check_line(line);
+// Hands out the words of a text, line by line. A line ends with LF, CRLF or CR; a backslash before its end
+// joins the next one.
+class Words {
+ public:
+  explicit Words(std::string_view text) : at_(text.data()), end_(at_ + text.size()) {}
+
+  long line() const { return line_; }
+  bool is_at_end() const { return at_ == end_; }
+
+  // Returns the next word of the line, "" at its end or where a comment begins.
+  std::string_view next() {
+    while (at_ != end_ && (is_blank(*at_) || is_joint())) {
+      if (is_joint())
+        ++at_, end_line();
+      else
+        ++at_;
     }
-    for (const List& list : lists_)
-      if (list.largest > list.count)
-        fail(list.largest_line,
-             fmt::format("{} index {}; allowed: 1 to {}", list.name, list.largest, list.count));
+    if (at_ != end_ && *at_ == '#') return {};
+    const char* begin = at_;
+    while (at_ != end_ && !is_blank(*at_) && !is_line_end(*at_) && *at_ != '#' && !is_joint()) ++at_;
+    return {begin, static_cast<std::size_t>(at_ - begin)};
+  }
+
+  // Goes behind the end of the line, whatever stands before it.
+  void skip_line() {
+    while (at_ != end_ && !is_line_end(*at_)) ++at_;
+    if (at_ != end_) end_line();
   }
 
  private:
-  // What faces point into.
-  struct List {
-    const char *keyword, *name;
-    int numbers;  // in an entry
-    long count = 0;
-    long largest = 0, largest_line = 0;  // index, and where it stands
-  };
+  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
+  static bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+  bool is_joint() const { return *at_ == '\\' && at_ + 1 != end_ && is_line_end(at_[1]); }
 
-  void check_line(const std::string& line) {
-    std::istringstream words(line);
-    std::string keyword;
-    words >> keyword;
+  void end_line() {
+    ++line_;
+    if (*at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n') ++at_;
+    ++at_;
+  }
+
+  const char *at_, *end_;
+  long line_ = 1;
+};
+
+// What faces point into.
+struct List {
+  const char *keyword, *name;
+  std::size_t needed;  // numbers of an entry; more, up to three, may follow
+  std::vector<Vec3> entries = {};
+  long largest = 0, largest_line = 0;  // index, and where it stands
+
+  long count() const { return static_cast<long>(entries.size()); }
+};
+
+class ObjReader {
+ public:
+  ObjReader(std::string_view text, const std::string& path) : text_(text), path_(path), words_(text) {}
+
+  Mesh mesh() {
+    for (; !words_.is_at_end(); words_.skip_line()) read_line();
+    for (const List& list : lists_)
+      if (list.largest > list.count())
+        fail(list.largest_line,
+             fmt::format("{} index {}; allowed: 1 to {}", list.name, list.largest, list.count()));
+    return cut();
+  }
+
+ private:
+  using Corner = std::array<std::uint32_t, 3>;  // places in the lists, or kNone
+
+  void read_line() {
+    const std::string_view keyword = words_.next();
+    if (keyword == "f") return read_face();
     for (List& list : lists_)
-      if (keyword == list.keyword) check_numbers(list, words), ++list.count;
-    if (keyword == "f") check_face(words);
+      if (keyword == list.keyword) return read_entry(list);
   }
 
-  void check_numbers(const List& list, std::istringstream& words) {
-    for (int i = 0; i < list.numbers; ++i) {
-      std::string word;
-      words >> word;
-      const char* begin = word.c_str() + (word.starts_with('+') ? 1 : 0);
-      const char* end = word.c_str() + word.size();
-      float value = 0;
-      const auto parsed = std::from_chars(begin, end, value);
-      if (parsed.ec != std::errc() || parsed.ptr != end || !std::isfinite(value))
-        fail(line_number_,
-             fmt::format("'{}' entry {} is '{}'; allowed: a finite number", list.keyword, i + 1, word));
+  void read_entry(List& list) {
+    std::array<double, 3> numbers = {};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::string_view word = words_.next();
+      if (i >= list.needed && word.empty()) break;
+      if (!parse_number(word, numbers[i]) || !(std::abs(numbers[i]) <= std::numeric_limits<float>::max()))
+        fail(words_.line(), fmt::format("'{}' entry {} is '{}'; allowed: a finite number", list.keyword,
+                                        i + 1, excerpt(word)));
     }
+    list.entries.push_back({numbers[0], numbers[1], numbers[2]});
   }
 
-  void check_face(std::istringstream& words) {
-    for (std::string word; words >> word;) {
-      if (word.starts_with('#')) return;
-      const char* field = word.c_str();
-      for (List& list : lists_) {
-        if (*field != '/') check_index(list, field, word);  // v//vn leaves vt out
-        field = std::strchr(field, '/');
-        if (!field) break;
-        ++field;
-      }
+  void read_face() {
+    const std::size_t first = corners_.size();
+    for (std::string_view word = words_.next(); !word.empty(); word = words_.next()) {
+      corners_.push_back(read_corner(word));
+      // An index that is left out may be a number that got lost, unless the whole face has none.
+      if (word.ends_with('/') && corners_[first][1] != kNone && corners_.back()[1] == kNone)
+        fail_index(lists_[1], word);
     }
+    face_ends_.push_back(corners_.size());
   }
 
-  void check_index(List& list, const char* field, const std::string& word) {
-    const long index = std::strtol(field, nullptr, 10);
-    if (index == 0 || index < -list.count)
-      fail(line_number_,
-           fmt::format("{} index '{}'; allowed: 1 up, or -1 down to -{}", list.name, word, list.count));
-    if (index > list.largest) list.largest = index, list.largest_line = line_number_;
+  // v, v/vt, v//vn or v/vt/vn; exporters that have no vt or vn also write v/, v// and v/vt/.
+  Corner read_corner(std::string_view word) {
+    Corner corner = {kNone, kNone, kNone};
+    std::string_view rest = word;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::string_view field = rest.substr(0, rest.find('/'));
+      if (k == 0 || !field.empty()) corner[k] = read_index(lists_[k], field, word);
+      if (field.size() == rest.size()) return corner;
+      rest.remove_prefix(field.size() + 1);
+    }
+    fail(words_.line(), fmt::format("a face has the corner '{}'; allowed: up to v/vt/vn", excerpt(word)));
+  }
+
+  std::uint32_t read_index(List& list, std::string_view field, std::string_view word) {
+    if (field.starts_with('+') && !field.starts_with("+-")) field.remove_prefix(1);
+    long index = 0;
+    const auto parsed = std::from_chars(field.data(), field.data() + field.size(), index);
+    if (parsed.ec != std::errc() || parsed.ptr != field.data() + field.size() || index == 0 ||
+        index < -list.count())
+      fail_index(list, word);
+    if (index < 0) return static_cast<std::uint32_t>(list.count() + index);
+    if (index > list.largest) list.largest = index, list.largest_line = words_.line();
+    return static_cast<std::uint32_t>(index - 1);  // what does not fit is refused at the end
+  }
+
+  Mesh cut() {
+    const auto every_corner_has = [&](std::size_t k) {
+      return std::none_of(corners_.begin(), corners_.end(), [&](const Corner& c) { return c[k] == kNone; });
+    };
+    has_uvs_ = every_corner_has(1), has_normals_ = every_corner_has(2);
+    require_memory();
+    PolygonCutter cutter;
+    std::vector<Vec3> polygon;
+    std::size_t first = 0;
+    for (const std::size_t end : face_ends_) {
+      polygon.clear();
+      for (std::size_t i = first; i < end; ++i) polygon.push_back(lists_[0].entries[corners_[i][0]]);
+      for (const auto& triangle : cutter.cut(polygon))
+        for (const std::uint32_t i : triangle) add_vertex(corners_[first + i]);
+      first = end;
+    }
+    return std::move(mesh_);
+  }
+
+  void require_memory() {
+    std::size_t triangles = 0, largest = 0, first = 0;
+    for (const std::size_t end : face_ends_) {
+      triangles += std::max(end - first, std::size_t{2}) - 2;
+      largest = std::max(largest, end - first);
+      first = end;
+    }
+    require_mesh_memory(path_, 3 * triangles, triangles, text_.size());
+    require_within_read_limit(fmt::format("{}: a face of {} corners", path_, largest),
+                              PolygonCutter::kBytesPerCorner * largest, text_.size());
+    mesh_.positions.reserve(3 * triangles);
+    if (has_uvs_) mesh_.uvs.reserve(3 * triangles);
+    if (has_normals_) mesh_.normals.reserve(3 * triangles);
+    mesh_.triangles.reserve(triangles);
+  }
+
+  void add_vertex(const Corner& corner) {
+    const std::uint32_t vertex = static_cast<std::uint32_t>(mesh_.positions.size());
+    mesh_.positions.push_back(lists_[0].entries[corner[0]]);
+    if (has_uvs_) {
+      const Vec3& uv = lists_[1].entries[corner[1]];
+      mesh_.uvs.push_back({uv.x, uv.y});
+    }
+    if (has_normals_) {
+      const Vec3& normal = lists_[2].entries[corner[2]];
+      if (!(length(normal) > 0)) throw Error(fmt::format("{}: normal {} has length 0", path_, corner[2] + 1));
+      mesh_.normals.push_back(normal);
+    }
+    if (vertex % 3 == 2) mesh_.triangles.push_back({vertex - 2, vertex - 1, vertex});
+  }
+
+  [[noreturn]] void fail_index(const List& list, std::string_view word) const {
+    fail(words_.line(), fmt::format("{} index '{}'; allowed: 1 up, or -1 down to -{}", list.name,
+                                    excerpt(word), list.count()));
   }
 
   [[noreturn]] void fail(long line, const std::string& message) const {
     throw Error(fmt::format("{}:{}: {}", path_, line, message));
   }
 
+  std::string_view text_;
   const std::string& path_;
-  long line_number_ = 0;
+  Words words_;
   // In the order of the fields of a corner, v/vt/vn.
-  std::array<List, 3> lists_{{{"v", "face", 3}, {"vt", "texture", 2}, {"vn", "normal", 3}}};
+  std::array<List, 3> lists_{{{"v", "face", 3}, {"vt", "texture", 1}, {"vn", "normal", 3}}};
+  std::vector<Corner> corners_;
+  std::vector<std::size_t> face_ends_;  // in corners_
+  bool has_uvs_ = false, has_normals_ = false;
+  Mesh mesh_;
 };
-
-struct ObjData {
-  tinyobj::attrib_t attributes;
-  std::vector<tinyobj::shape_t> shapes;
-};
-
-ObjData parse(const std::string& path, const std::string& text) {
-  ObjData data;
-  std::vector<tinyobj::material_t> materials;
-  std::string warning, error;
-  std::istringstream in(text);
-  if (!tinyobj::LoadObj(&data.attributes, &data.shapes, &materials, &warning, &error, &in))
-    throw Error(fmt::format("{}: not a valid OBJ file: {}", path, error.substr(0, error.find('\n'))));
-  return data;
-}
-
-Vec3 triple(const std::vector<tinyobj::real_t>& values, int index) {
-  const tinyobj::real_t* v = &values[3 * static_cast<std::size_t>(index)];
-  return {v[0], v[1], v[2]};
-}
-
-Point2 pair(const std::vector<tinyobj::real_t>& values, int index) {
-  const tinyobj::real_t* v = &values[2 * static_cast<std::size_t>(index)];
-  return {v[0], v[1]};
-}
-
-Vec3 normal_of(const std::string& path, const tinyobj::attrib_t& attributes, int index) {
-  const Vec3 normal = triple(attributes.normals, index);
-  if (!(length(normal) > 0)) throw Error(fmt::format("{}: normal {} has length 0", path, index + 1));
-  return normalize(normal);
-}
 
 }  // namespace
 
-LoadedMesh load_obj(const std::string& path) {
-  const std::string text = read_file(path);
-  ObjCheck(path).check(text);
-  const ObjData data = parse(path, text);
+LoadedMesh load_obj(const std::string& path) { return parse_obj(read_text(path), path); }
 
-  Mesh mesh;
-  bool has_normals = true, has_uvs = true;
-  for (const auto& shape : data.shapes)
-    for (const auto& corner : shape.mesh.indices) {
-      mesh.positions.push_back(triple(data.attributes.vertices, corner.vertex_index));
-      has_normals = has_normals && corner.normal_index >= 0;
-      if (has_normals) mesh.normals.push_back(normal_of(path, data.attributes, corner.normal_index));
-      has_uvs = has_uvs && corner.texcoord_index >= 0;
-      if (has_uvs) mesh.uvs.push_back(pair(data.attributes.texcoords, corner.texcoord_index));
-    }
-  if (!has_normals) mesh.normals.clear();  // smooth shading needs all of them
-  if (!has_uvs) mesh.uvs.clear();
-  for (std::uint32_t i = 0; i + 2 < mesh.positions.size(); i += 3)
-    mesh.triangles.push_back({i, i + 1, i + 2});
-  return checked_mesh(path, std::move(mesh));
+LoadedMesh parse_obj(std::string_view text, const std::string& path) {
+  return checked_mesh(path, ObjReader(without_byte_order_mark(text), path).mesh());
 }
 
 }  // namespace sunbeam

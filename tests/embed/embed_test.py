@@ -19,7 +19,7 @@ NM = os.environ["CMAKE_NM"]
 EXAMPLE = pathlib.Path(__file__).resolve().parent / "example"
 
 # Packages that an embedder of plain tables may lack.
-NOT_NEEDED = ("OpenVDB", "embree", "TBB", "fmt", "tomlplusplus", "CLI11", "nlohmann_json", "tinyobjloader", "PNG",
+NOT_NEEDED = ("OpenVDB", "embree", "TBB", "fmt", "tomlplusplus", "CLI11", "nlohmann_json", "PNG",
               "GTest", "benchmark")
 
 RECIPE = """\

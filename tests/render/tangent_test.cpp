@@ -285,7 +285,7 @@ TEST(Tangent, BadTextureCoordinatesAreRefusedWithTheirLine) {
   expect_obj_error(kSquare + uvs + "f 1/1 2/2 3/\n", "m.obj:8: texture index '3/'");
   expect_obj_error(kSquare + "f 1/1 2/1 3/1\n", "m.obj:5: texture index 1; allowed: 1 to 0");
   expect_obj_error(kSquare + "vt nan 0\nf 1/1 2/1 3/1\n", "m.obj:5: 'vt' entry 1 is 'nan'");
-  expect_obj_error(kSquare + "vt 0\nf 1/1 2/1 3/1\n", "m.obj:5: 'vt' entry 2 is ''");
+  expect_obj_error(kSquare + "vt\nf 1/1 2/1 3/1\n", "m.obj:5: 'vt' entry 1 is ''");
   expect_obj_error(kSquare + uvs + "vn 0 0 1\nf 1/1/1 2/2/1 3/3/2\n",
                    "m.obj:9: normal index 2; allowed: 1 to 1");
   expect_obj_error(kSquare + "vn 0 0 1\nf 1//1 2//1 3//-2\n", "m.obj:6: normal index '3//-2'");

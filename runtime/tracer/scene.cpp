@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -277,6 +278,7 @@ SceneMaterial read_material(const ConfigTable& table) {
   SceneMaterial material;
   material.name = table.string("name");
   material.relief = read_relief(table);
+  material.relief_key = table.has("scales") ? "scales" : "bump";
   switch (table.choice("type", {"skin", "diffuse", "gloss"})) {
     case 0:
       material.type = SceneMaterial::Type::skin;
@@ -337,11 +339,27 @@ Snake read_snake(const ConfigTable& table) {
 }
 
 Mesh read_mesh(const ConfigTable& table, std::vector<std::string>& warnings) {
-  LoadedMesh loaded = load_named_file(table, load_mesh);
+  const std::string folder = std::filesystem::path(table.file()).parent_path().string();
+  LoadedMesh loaded = load_named_file(
+      table, [&](const std::string& path) { return load_mesh(path, folder.empty() ? "." : folder); });
   if (loaded.dropped > 0)
     warnings.push_back(
         fmt::format("{}: {} triangles without area are left out", table.string("file"), loaded.dropped));
   return std::move(loaded.mesh);
+}
+
+// Names what of a material stays constant on a mesh without texture coordinates.
+void warn_without_coordinates(const std::string& file, const SceneMaterial& material, Scene& scene) {
+  std::vector<std::string> keys;
+  for (std::size_t k = 0; k < kParameterNames.size(); ++k)
+    if (material.parameters[k] && !material.parameters[k]->is_constant()) keys.push_back(kParameterNames[k]);
+  if (material.relief) keys.push_back(material.relief_key);
+  if (keys.empty()) return;
+  const std::string warning =
+      fmt::format("{}: the mesh has no texture coordinates, so {} of material \"{}\" cannot vary over it",
+                  file, fmt::join(keys, ", "), material.name);
+  if (std::find(scene.warnings.begin(), scene.warnings.end(), warning) == scene.warnings.end())
+    scene.warnings.push_back(warning);
 }
 
 // A sphere is exact, or a mesh if it has a `resolution`; only that can be turned.
@@ -397,6 +415,9 @@ void read_object(const ConfigTable& table, Scene& scene, std::vector<SceneObject
       break;
     case 3:
       scene.objects.push_back({placed(table, read_mesh(table, scene.warnings), transform), material});
+      if (std::get<Mesh>(scene.objects.back().shape).uvs.empty())
+        warn_without_coordinates(table.string("file"), scene.materials[static_cast<std::size_t>(material)],
+                                 scene);
       break;
     default: {
       const Snake snake = read_snake(table);

@@ -86,6 +86,7 @@ struct SceneMaterial {
   // shading normal on the outer side of the surface (that of its winding).
   double tangent_rotation_deg = 0;
   std::optional<Relief> relief;  // bump map
+  std::string relief_key;        // of the scene file, "scales" or "bump"
 
   // Says whether a parameter depends on the texture coordinates.
   bool varies() const {
@@ -122,7 +123,7 @@ struct Scene {
   std::vector<SceneMaterial> materials;
   std::vector<SceneObject> objects;   // those of the file, then the eyes of its snakes
   std::vector<std::string> files;     // all that the scene names, resolved
-  std::vector<std::string> warnings;  // a line each, for people: what was left out of files
+  std::vector<std::string> warnings;  // a line each, for people: what was left out of files or cannot be used
 };
 
 // Reads a scene. Throws Error for anything missing, out of range, unknown or degenerate, in the file or in

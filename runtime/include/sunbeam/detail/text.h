@@ -33,7 +33,7 @@ std::string printable(std::string_view text);
 // Returns whether a text is UTF-8 without control characters other than line feeds and tabs.
 bool is_plain_text(std::string_view text);
 
-// Returns the same of the first 60 bytes, and "..." if there are more.
+// Returns printable() of the first 60 bytes, and "..." if there are more.
 std::string excerpt(std::string_view text);
 
 }  // namespace v1

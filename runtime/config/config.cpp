@@ -111,6 +111,16 @@ void apply_override(toml::table& root, const std::string& text, const std::strin
   });
 }
 
+// The path without "..", where that is the same file: behind a symbolic link ".." leads above the link's end.
+std::filesystem::path without_dots(const std::filesystem::path& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const auto end = [&](const fs::path& p) { return fs::weakly_canonical(fs::absolute(p, error), error); };
+  const fs::path shorter = path.lexically_normal();
+  const bool is_same = end(path) == end(shorter);
+  return is_same && !error ? shorter : path;
+}
+
 }  // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -310,8 +320,8 @@ void ConfigTable::finish() const {
 const std::string& ConfigTable::file() const { return node_->file; }
 
 std::string ConfigTable::resolve(const std::string& relative_path) const {
-  node_->document->resolved.push_back(
-      (std::filesystem::path(node_->file).parent_path() / relative_path).string());
+  const std::filesystem::path folder = std::filesystem::path(node_->file).parent_path();
+  node_->document->resolved.push_back(without_dots(folder / relative_path).string());
   return node_->document->resolved.back();
 }
 

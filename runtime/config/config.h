@@ -67,7 +67,7 @@ class ConfigTable {
   [[noreturn]] void fail(std::string_view key, const std::string& message) const;
 
   const std::string& file() const;
-  // Resolves a path that is relative to the folder of the file; what follows is left to the system.
+  // Resolves a path that is relative to the folder of the file, links and ".." as the system does.
   std::string resolve(const std::string& relative_path) const;
   // Returns the paths that were resolved so far, here and in all tables of the document.
   const std::vector<std::string>& resolved_files() const;

@@ -25,11 +25,8 @@ PRINTING = {
 SILENT = {
     "bake": ("bake", "tiny.toml", "-o", "new.exr", "--preview"),
     "part": ("bake", "tiny.toml", "-o", "new.part", "--shard", "1/1"),
-    "merge": ("merge", "tiny.part", "-o", "new.exr"),
-    "plot": ("plot", "tiny.exr", "--what", "reflectance", "-o", "new.svg"),
     "render": ("render", "scene.toml", "-o", "new.exr", "--material", "diffuse", "--stats", "new.json"),
     "texture": ("texture", "-o", "new.exr", "--columns", "1", "--rows", "2", "--pixels-per-scale", "4"),
-    "mesh": ("mesh", "sphere", "-o", "new.ply", "--resolution", "16"),
 }
 FAILING = {
     "a bad recipe": ("bake", "tiny.toml", "-o", "new.exr", "--set", "material.albedo=2"),
@@ -42,8 +39,6 @@ class Streams(support.CliTest):
     @classmethod
     def prepare(cls):
         support.succeed_in(cls.folder, "bake", "tiny.toml", "-o", "tiny.exr", "--preview")
-        support.succeed_in(cls.folder, *SILENT["part"])
-        (cls.folder / "new.part").rename(cls.folder / "tiny.part")
         cls.write("scene.toml", SCENE)
         support.succeed_in(cls.folder, "render", "scene.toml", "-o", "a.exr", "--material", "diffuse")
         cls.write("points.csv", "theta_i_deg,theta_o_deg,phi_deg\n10,20,30\n")

@@ -159,9 +159,10 @@ class Numbers(support.CliTest):
                 if form is None:
                     self.assertTrue(option in self.NO_NUMBER or not kind, (command, option))
                     continue
-                seen.append(option)
                 in_turn = self.BAD[len(seen) % len(self.BAD)]
-                for value in {in_turn} | ({"nan"} if kind not in ("INT", "UINT") else set()):
+                is_new_float = option not in seen and kind not in ("INT", "UINT")
+                seen.append(option)
+                for value in {in_turn, "nan"} if is_new_float else {in_turn}:
                     with self.subTest(command=command, option=option, value=value):
                         result = self.sunbeam(*self.arguments_of(command, option, form.format(value)))
                         self.check_refusal(result, {"--set": "radius" if command == "render" else "albedo"}.get(

@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "sunbeam/core/error.h"
 #include "tests/support/error_of.h"
+#include "tests/support/scratch_folder.h"
 
 namespace sunbeam {
 namespace {
@@ -12,8 +15,11 @@ namespace {
 using test::error_of;
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
+
+namespace fs = std::filesystem;
 
 constexpr const char* kText = R"(title = "skin"
 [film]
@@ -192,6 +198,24 @@ TEST(Config, MissingFileAndFolder) {
 
 TEST(Config, ResolveIsRelativeToTheFile) {
   EXPECT_EQ(ConfigTable::parse("", "scenes/a/s.toml").resolve("../t.stbl"), "scenes/t.stbl");
+}
+
+TEST(Config, TwoDotsBehindALinkLeadAboveItsEnd) {
+  const ScratchFolder folder;
+  fs::create_directories(folder.file("disk/deep"));
+  fs::create_directory_symlink("disk/deep", folder.file("link"));
+  const ConfigTable table = ConfigTable::parse("[a]\n", folder.file("s.toml"));
+  EXPECT_EQ(table.resolve("disk/../f"), folder.file("f"));
+  EXPECT_EQ(table.resolve("link/../f"), folder.file("link/../f"));  // which is disk/f
+  EXPECT_EQ(table.table("a").resolve("link/f"), folder.file("link/f"));
+  EXPECT_THAT(table.resolved_files(),
+              ElementsAre(folder.file("f"), folder.file("link/../f"), folder.file("link/f")));
+}
+
+TEST(Config, InfinityIsNoPointOfACurve) {
+  for (const std::string pair : {"[1, inf]", "[inf, 1]", "[1, nan]", "[1, -inf]"})
+    EXPECT_THAT(error_of([&] { ConfigTable::parse("a = [[0, 1], " + pair + "]", "c").curve("a", {}, {}); }),
+                HasSubstr("element 2 is " + pair));
 }
 
 TEST(Config, CanonicalTextHoldsOverridesAndReadsBack) {

@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <iostream>
 #include <string>
 
@@ -16,11 +15,7 @@
 namespace sunbeam {
 namespace {
 
-int output_error = 0;  // errno of the first failure
-
-void note_output(bool is_written) {
-  if (!is_written && output_error == 0) output_error = errno != 0 ? errno : EIO;
-}
+bool output_is_lost = false;
 
 }  // namespace
 
@@ -34,8 +29,7 @@ void prepare_console() {
 }
 
 void write_output(std::string_view text) {
-  errno = 0;
-  note_output(std::fwrite(text.data(), 1, text.size(), stdout) == text.size());
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) output_is_lost = true;
 }
 
 void write_message(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); }
@@ -43,13 +37,11 @@ void write_message(std::string_view text) { std::fwrite(text.data(), 1, text.siz
 void message_line(std::string_view line) { write_message(printable(line) + "\n"); }
 
 void require_output_written() {
-  errno = 0;
-  note_output(std::fflush(stdout) == 0);
-  note_output(!std::cout.bad() && std::cout.flush());
   const int copy = ::dup(STDOUT_FILENO);  // network file systems report some errors when a file is closed
-  note_output(copy < 0 || ::close(copy) == 0);
-  if (output_error != 0)
-    throw Error(std::string("standard output: cannot write: ") + std::strerror(output_error));
+  const bool is_written = std::fflush(stdout) == 0 && std::cout.flush() && (copy < 0 || ::close(copy) == 0);
+  if (output_is_lost || !is_written) fail_output();
 }
+
+void fail_output() { throw Error("standard output: cannot write"); }
 
 }  // namespace sunbeam

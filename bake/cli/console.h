@@ -33,4 +33,7 @@ void message(fmt::format_string<Args...> format, Args&&... args) {
 // Throws Error if anything of standard output could not be written. Must come last.
 void require_output_written();
 
+// Throws the same Error.
+[[noreturn]] void fail_output();
+
 }  // namespace sunbeam

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cerrno>
-#include <cstring>
 #include <iostream>
 
 #include "bake/check/eval_csv.h"
@@ -60,7 +58,7 @@ int run_eval(const EvalOptions& options) {
     std::cout.flush();
     print_report(report, parse_quantity(options.quantity));
   } catch (const std::ios::failure&) {
-    throw Error(std::string("standard output: cannot write: ") + std::strerror(errno));
+    fail_output();
   }
   return 0;
 }

@@ -6,7 +6,7 @@ import unittest
 
 import support
 
-NO_SPACE, CLOSED, NO_READER = "No space left on device", "Bad file descriptor", "Broken pipe"
+LOST = "sunbeam: error: standard output: cannot write"
 
 SCENE = support.SKY_SPHERE_SCENE.format(name="tiny", spp=2, max_bounces=2, tangent_rotation_deg=0)
 
@@ -74,14 +74,14 @@ class Streams(support.CliTest):
         return made
 
     def test_what_could_not_be_printed_is_an_error(self):
-        cases = [(name, NO_SPACE, self.run_with(arguments, stdout="/dev/full")) for name, arguments in PRINTING.items()]
+        cases = [(name, "full", self.run_with(arguments, stdout="/dev/full")) for name, arguments in PRINTING.items()]
         for name in ("help", "eval of a table", "info of a recipe"):
-            cases.append((name, CLOSED, self.run_with(PRINTING[name], closed=(1,))))
-            cases.append((name, NO_READER, self.run_without_reader(PRINTING[name], "stdout")))
-        for name, reason, (code, _, err) in cases:
-            with self.subTest(command=name, reason=reason):
+            cases.append((name, "closed", self.run_with(PRINTING[name], closed=(1,))))
+            cases.append((name, "no reader", self.run_without_reader(PRINTING[name], "stdout")))
+        for name, how, (code, _, err) in cases:
+            with self.subTest(command=name, how=how):
                 self.assertEqual(code, 2, err)
-                self.assertEqual(err.splitlines()[-1], f"sunbeam: error: standard output: cannot write: {reason}")
+                self.assertEqual(err.splitlines()[-1], LOST)
 
     def test_files_are_the_same_without_any_stream(self):
         """None is opened in the place of one. What prints nothing needs no output."""
@@ -119,7 +119,7 @@ class Streams(support.CliTest):
         rows = "".join(f"{k % 89},20,30\n" for k in range(20000))
         self.write("many.csv", "theta_i_deg,theta_o_deg,phi_deg\n" + rows)
         code, _, err = self.run_without_reader(("eval", "tiny.exr", "--points", "many.csv"), "stdout")
-        self.assertEqual((code, err), (2, f"sunbeam: error: standard output: cannot write: {NO_READER}\n"))
+        self.assertEqual((code, err), (2, f"{LOST}\n"))
 
     def test_closed_standard_input(self):
         arguments = ("eval", "tiny.exr", "--points", "-")

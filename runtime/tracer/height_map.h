@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sunbeam/detail/warp.h"
@@ -29,10 +30,13 @@ struct HeightMap {
   }
 };
 
-// Reads heights. Of an .exr it takes channel Y, else R, of any pixel type; of a .png grey, 0 to 1, 16 bits as
-// they stand, 8 bits without undoing sRGB, for heights are no colours. Throws Error naming the file if it
-// cannot be read or holds a value that is not finite or beyond +-1e6.
+// Reads heights: of an EXR channel Y, else R, of any pixel type, in the display window, 0 where the data
+// window has no pixel; of a PNG its grey numbers over 255 or 65535 as they are stored, whatever gAMA, sRGB or
+// iCCP say, for heights are no colours. Throws Error naming the file if it cannot be read, asks for too much
+// memory, holds a value that is not finite or beyond +-1e6, or is a PNG of colours.
 HeightMap load_height_map(const std::string& path);
+// Reads the same from the bytes of a file.
+HeightMap parse_height_map(std::string_view bytes, const std::string& name);
 
 // Writes heights: an .exr has one 32-bit float channel Y, a .png 16-bit grey, values clamped to [0, 1]. Both
 // throw Error for another extension.

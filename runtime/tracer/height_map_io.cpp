@@ -1,7 +1,6 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStdIO.h>
 #include <fmt/format.h>
@@ -9,51 +8,64 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
-#include <limits>
+#include <utility>
 
+#include "runtime/tracer/exr_source.h"
 #include "runtime/tracer/height_map.h"
+#include "runtime/tracer/image_io.h"
+#include "runtime/tracer/png_source.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/file.h"
 
 namespace sunbeam {
 namespace {
 
-constexpr long kMaxPixels = 1L << 28;
 constexpr double kMaxHeight = 1e6;
 
-HeightMap empty_map(long width, long height) {
-  if (width < 1 || height < 1 || width > kMaxPixels || height > kMaxPixels || width * height > kMaxPixels)
-    throw Error(fmt::format("found {} x {} pixels; allowed: 1 to {} in all", width, height, kMaxPixels));
-  HeightMap map{static_cast<int>(width), static_cast<int>(height), {}};
-  map.values.resize(static_cast<std::size_t>(width * height));
+HeightMap read_exr_heights(std::string_view bytes, const std::string& name) {
+  ExrSource source(bytes, name);
+  const std::string channel = source.find_part({"Y"}) ? "Y" : "R";
+  if (!source.find_part({channel})) source.fail_for_channels("Y or R must be there, at every pixel");
+  const PixelWindow window = source.window();
+  const bool is_whole = window == PixelWindow::whole(window.width, window.height);
+  const auto pixels =
+      static_cast<std::uint64_t>(window.columns()) * static_cast<std::uint64_t>(window.rows());
+  require_picture_memory(name, window.width, window.height, sizeof(float), bytes.size(),
+                         is_whole ? 0 : pixels * sizeof(float));
+  std::vector<float> values;
+  source.read({{{channel}, &values}});
+  if (!is_whole) values = in_whole_picture(values, 1, window);
+  return {window.width, window.height, std::move(values)};
+}
+
+// A height has no colour: three channels must be one number.
+void require_grey(const PngNumbers& png, const std::string& name, std::size_t pixel) {
+  const int r = png.at(3 * pixel), g = png.at(3 * pixel + 1), b = png.at(3 * pixel + 2);
+  if (r == g && g == b) return;
+  const auto width = static_cast<std::size_t>(png.width);
+  throw Error(
+      fmt::format("{}: pixel ({}, {}) from the top left has R, G, B {}, {}, {}; allowed for heights and "
+                  "fields: grey, or three equal channels",
+                  name, pixel % width, pixel / width, r, g, b));
+}
+
+HeightMap read_png_heights(std::string_view bytes, const std::string& name) {
+  const PngNumbers png = parse_png(bytes, name, sizeof(float));
+  HeightMap map{png.width, png.height, {}};
+  const std::size_t pixels = static_cast<std::size_t>(png.width) * static_cast<std::size_t>(png.height);
+  const auto channels = static_cast<std::size_t>(png.channels);
+  map.values.reserve(pixels);
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+    if (channels == 3) require_grey(png, name, pixel);
+    map.values.push_back(static_cast<float>(png.at(channels * pixel)) / static_cast<float>(png.largest()));
+  }
   return map;
 }
 
-// `min` is the corner of the data window: OpenEXR addresses pixels by absolute coordinates.
-Imf::Slice slice_of(const HeightMap& map, const Imath::V2i& min) {
-  const std::size_t row = sizeof(float) * static_cast<std::size_t>(map.width);
-  // The slice type is shared by reading and writing and hence not const; writing only reads through it.
+// The slice type is shared by reading and writing and hence not const; writing only reads through it.
+Imf::Slice slice_of(const HeightMap& map) {
   char* base = reinterpret_cast<char*>(const_cast<float*>(map.values.data()));
-  return {
-      Imf::FLOAT,
-      base - static_cast<std::ptrdiff_t>(sizeof(float)) * min.x - static_cast<std::ptrdiff_t>(row) * min.y,
-      sizeof(float), row};
-}
-
-HeightMap read_exr_heights(const std::string& path) {
-  Imf::InputFile file(path.c_str());
-  const Imf::Header& header = file.header();
-  const Imath::Box2i window = header.dataWindow();
-  HeightMap map = empty_map(long{window.max.x} - window.min.x + 1, long{window.max.y} - window.min.y + 1);
-  const char* channel = header.channels().findChannel("Y") ? "Y" : "R";
-  if (!header.channels().findChannel(channel))
-    throw Error("found neither channel Y nor R; allowed: one of them");
-  Imf::FrameBuffer buffer;
-  buffer.insert(channel, slice_of(map, window.min));
-  file.setFrameBuffer(buffer);
-  file.readPixels(window.min.y, window.max.y);
-  return map;
+  return {Imf::FLOAT, base, sizeof(float), sizeof(float) * static_cast<std::size_t>(map.width)};
 }
 
 std::string exr_bytes(const HeightMap& map) {
@@ -61,7 +73,7 @@ std::string exr_bytes(const HeightMap& map) {
   header.compression() = Imf::ZIP_COMPRESSION;
   header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
   Imf::FrameBuffer buffer;
-  buffer.insert("Y", slice_of(map, {0, 0}));
+  buffer.insert("Y", slice_of(map));
   Imf::StdOSStream stream;
   {
     Imf::OutputFile file(stream, header);
@@ -69,36 +81,6 @@ std::string exr_bytes(const HeightMap& map) {
     file.writePixels(map.height);
   }  // the table of line offsets is written at the end
   return stream.str();
-}
-
-template <class Byte>
-void read_png_values(png_image& png, HeightMap& map) {
-  std::vector<Byte> values(map.values.size());
-  if (!png_image_finish_read(&png, nullptr, values.data(), 0, nullptr)) throw Error(png.message);
-  std::transform(values.begin(), values.end(), map.values.begin(), [](Byte value) {
-    return static_cast<float>(value) / static_cast<float>(std::numeric_limits<Byte>::max());
-  });
-}
-
-HeightMap read_png_heights(const std::string& path) {
-  const std::string bytes = read_file(path);
-  png_image png{};
-  png.version = PNG_IMAGE_VERSION;
-  if (!png_image_begin_read_from_memory(&png, bytes.data(), bytes.size())) throw Error(png.message);
-  const bool is_wide = png.format & PNG_FORMAT_FLAG_LINEAR;
-  png.format = is_wide ? PNG_FORMAT_LINEAR_Y : PNG_FORMAT_GRAY;
-  try {
-    HeightMap map = empty_map(png.width, png.height);
-    if (is_wide)
-      read_png_values<png_uint_16>(png, map);
-    else
-      read_png_values<png_byte>(png, map);
-    png_image_free(&png);
-    return map;
-  } catch (...) {
-    png_image_free(&png);
-    throw;
-  }
 }
 
 std::string png_bytes(const HeightMap& map) {
@@ -119,11 +101,13 @@ std::string png_bytes(const HeightMap& map) {
   return bytes;
 }
 
-void require_sane(const HeightMap& map) {
-  for (const float value : map.values)
-    if (!(std::abs(value) <= kMaxHeight))
-      throw Error(
-          fmt::format("holds the height {:g}; allowed: {:g} to {:g}", value, -kMaxHeight, kMaxHeight));
+void require_sane(const HeightMap& map, const std::string& name) {
+  const auto bad = std::find_if(map.values.begin(), map.values.end(),
+                                [](float value) { return !(std::abs(value) <= kMaxHeight); });
+  if (bad == map.values.end()) return;
+  const long index = bad - map.values.begin();
+  throw Error(fmt::format("{}: pixel ({}, {}) from the top left holds the height {:g}; allowed: {:g} to {:g}",
+                          name, index % map.width, index / map.width, *bad, -kMaxHeight, kMaxHeight));
 }
 
 }  // namespace
@@ -136,13 +120,15 @@ void require_height_map_extension(const std::string& path) {
 
 HeightMap load_height_map(const std::string& path) {
   require_height_map_extension(path);
-  try {
-    const HeightMap map = extension(path) == ".exr" ? read_exr_heights(path) : read_png_heights(path);
-    require_sane(map);
-    return map;
-  } catch (const std::exception& error) {
-    throw Error(fmt::format("{}: cannot read the height map: {}", path, error.what()));
-  }
+  return parse_height_map(read_file(path), path);
+}
+
+HeightMap parse_height_map(std::string_view bytes, const std::string& name) {
+  if (!is_exr(bytes) && !is_png(bytes))
+    throw Error(name + ": cannot read the height map: found no EXR or PNG; allowed: one of them");
+  HeightMap map = is_exr(bytes) ? read_exr_heights(bytes, name) : read_png_heights(bytes, name);
+  require_sane(map, name);
+  return map;
 }
 
 void write_height_map(const std::string& path, const HeightMap& map) {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include "sunbeam/core/vec.h"
@@ -44,5 +46,18 @@ struct Image {
     return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
   }
 };
+
+// Throws Error, which begins with `name: `, if a picture with so many bytes a pixel, and `bytes_beside` it,
+// are more than a file of `file_bytes` may ask for (sunbeam/core/read_limit.h). Width and height are >= 0.
+void require_picture_memory(const std::string& name, int width, int height, std::uint64_t bytes_per_pixel,
+                            std::uint64_t file_bytes, std::uint64_t bytes_beside = 0);
+
+// Throws Error, which names the file, channel and pixel of the first value that is not finite.
+void require_finite(const std::string& name, const Image& image);
+
+// Takes the pixels of a window, `channels` values each, to the whole picture: 0 where the window has none,
+// and without what lies beyond the picture. `window` may lie anywhere.
+std::vector<float> in_whole_picture(const std::vector<float>& values, std::size_t channels,
+                                    const PixelWindow& window);
 
 }  // namespace sunbeam

@@ -3,7 +3,6 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
@@ -18,6 +17,8 @@
 #include <span>
 #include <string_view>
 
+#include "runtime/tracer/chromaticities.h"
+#include "runtime/tracer/exr_source.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/file.h"
 
@@ -26,8 +27,10 @@ namespace {
 
 constexpr std::array<const char*, 3> kMeanChannels = {"R", "G", "B"};
 constexpr std::array<const char*, 3> kVarianceChannels = {"variance.R", "variance.G", "variance.B"};
-// A header may claim any size; nothing in this program needs more.
-constexpr long kMaxPixels = 1L << 28;
+
+std::vector<std::string> names(const std::array<const char*, 3>& channels) {
+  return {channels.begin(), channels.end()};
+}
 
 // `min` is the corner of the data window: OpenEXR addresses pixels by absolute coordinates.
 void insert_slices(Imf::FrameBuffer& buffer, const std::array<const char*, 3>& names, const Image& image,
@@ -50,19 +53,6 @@ void insert_slice(Imf::FrameBuffer& buffer, const std::string& name, const std::
                  static_cast<std::ptrdiff_t>(sizeof(float)) * min.x -
                  static_cast<std::ptrdiff_t>(row) * min.y;
   buffer.insert(name, Imf::Slice(Imf::FLOAT, origin, sizeof(float), row));
-}
-
-bool has_channels(const Imf::Header& header, const std::array<const char*, 3>& names) {
-  for (const char* name : names)
-    if (!header.channels().findChannel(name)) return false;
-  return true;
-}
-
-std::string channel_names(const Imf::Header& header) {
-  std::string names;
-  for (auto it = header.channels().begin(); it != header.channels().end(); ++it)
-    names += (names.empty() ? "" : ", ") + std::string(it.name());
-  return names.empty() ? "none" : names;
 }
 
 std::string exr_bytes(const ExrImage& image) {
@@ -89,47 +79,59 @@ std::string exr_bytes(const ExrImage& image) {
   return stream.str();
 }
 
-// The place of a data window in its display window.
-PixelWindow window_in(const Imath::Box2i& whole, const Imath::Box2i& part) {
-  return {whole.max.x - whole.min.x + 1, whole.max.y - whole.min.y + 1, part.min.x - whole.min.x,
-          part.min.y - whole.min.y,      part.max.x - whole.min.x + 1,  part.max.y - whole.min.y + 1};
+// A file of luminance alone is grey.
+std::vector<float> grey_pixels(const std::vector<float>& luminance) {
+  std::vector<float> rgb;
+  rgb.reserve(3 * luminance.size());
+  for (const float value : luminance) rgb.insert(rgb.end(), 3, value);
+  return rgb;
 }
 
-ExrImage read_channels(const std::string& path) {
-  Imf::InputFile file(path.c_str());
-  const Imf::Header& header = file.header();
-  const Imath::Box2i window = header.dataWindow();
-  const long width = long{window.max.x} - window.min.x + 1;
-  const long height = long{window.max.y} - window.min.y + 1;
-  if (width > kMaxPixels || height > kMaxPixels || width * height > kMaxPixels)
-    throw Error(fmt::format("found {} x {} pixels; allowed: {} in all", width, height, kMaxPixels));
-  if (!has_channels(header, kMeanChannels))
-    throw Error(fmt::format("found channels {}; allowed: R, G and B must be there", channel_names(header)));
+// Of a file without R, G and B.
+std::vector<float> read_luminance(ExrSource& source) {
+  if (source.find_part({"Y", "RY", "BY"}, true)) return source.read_luminance_chroma();
+  if (!source.find_part({"Y"})) source.fail_for_channels("R, G and B must be there, or Y, at every pixel");
+  std::vector<float> luminance;
+  const PixelWindow w = source.window();
+  source.require_memory(w.columns(), w.rows(), 4 * sizeof(float));
+  source.read({{{"Y"}, &luminance}});
+  return grey_pixels(luminance);
+}
 
-  ExrImage image;
-  image.mean = Image(static_cast<int>(width), static_cast<int>(height));
-  Imf::FrameBuffer buffer;
-  insert_slices(buffer, kMeanChannels, image.mean, window.min);
-  if (has_channels(header, kVarianceChannels)) {
-    image.variance = Image(image.mean.width, image.mean.height);
-    insert_slices(buffer, kVarianceChannels, image.variance, window.min);
+// What is read of a part with R, G and B beside them.
+std::vector<ExrRequest> requests(const ExrSource& source, ExrChannels channels, ExrImage& image) {
+  std::vector<ExrRequest> wanted = {{names(kMeanChannels), &image.mean.rgb}};
+  if (channels == ExrChannels::mean) return wanted;
+  const auto is_there = [&](const std::string& name) { return source.has_channel(name); };
+  if (std::all_of(kVarianceChannels.begin(), kVarianceChannels.end(), is_there))
+    wanted.push_back({names(kVarianceChannels), &image.variance.rgb});
+  if (channels == ExrChannels::mean_and_variance) return wanted;
+  const Imf::ChannelList& list = source.header().channels();
+  for (auto it = list.begin(); it != list.end(); ++it) {
+    const std::string name = it.name();
+    const bool is_asked_for = std::any_of(wanted.begin(), wanted.end(), [&](const ExrRequest& request) {
+      return std::find(request.channels.begin(), request.channels.end(), name) != request.channels.end();
+    });
+    if (!is_asked_for && is_there(name)) wanted.push_back({{name}, &image.layers[name]});
   }
-  for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
-    const auto is_this = [&](const char* name) { return std::string_view(name) == it.name(); };
-    const bool known = std::any_of(kMeanChannels.begin(), kMeanChannels.end(), is_this) ||
-                       std::any_of(kVarianceChannels.begin(), kVarianceChannels.end(), is_this);
-    if (known || it.channel().xSampling != 1 || it.channel().ySampling != 1) continue;
-    auto& values = image.layers[it.name()];
-    values.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    insert_slice(buffer, it.name(), values, image.mean.width, window.min);
+  return wanted;
+}
+
+// Chromaticities of the header tell what R, G and B mean. How noise of several channels adds up is not known,
+// so converted pictures have no variance.
+void convert(const ExrSource& source, ExrImage& image) {
+  if (!Imf::hasChromaticities(source.header())) return;
+  const Imf::Chromaticities& stated = Imf::chromaticities(source.header());
+  const auto point = [](const Imath::V2f& p) { return Point2{p.x, p.y}; };
+  const Chromaticities space{point(stated.red), point(stated.green), point(stated.blue), point(stated.white)};
+  if (is_rec709(space)) return;
+  try {
+    convert_to_rec709(image.mean, space);
+  } catch (const Error& error) {
+    source.fail(error.what());
   }
-  image.window = window_in(header.displayWindow(), window);
-  file.setFrameBuffer(buffer);
-  file.readPixels(window.min.y, window.max.y);
-  for (auto it = header.begin(); it != header.end(); ++it)
-    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute()))
-      image.attributes[it.name()] = text->value();
-  return image;
+  image.variance = {};
+  image.is_converted = true;
 }
 
 void require_pixels(const std::string& path, const Image& image) {
@@ -205,12 +207,32 @@ void write_exr(const std::string& path, const ExrImage& image) {
   write_file_atomically(path, bytes);
 }
 
-ExrImage read_exr(const std::string& path) {
-  try {
-    return read_channels(path);
-  } catch (const std::exception& error) {
-    throw Error(fmt::format("{}: cannot read the EXR file: {}", path, error.what()));
+bool is_exr(std::string_view bytes) { return bytes.starts_with("\x76\x2f\x31\x01"); }
+
+ExrImage read_exr(const std::string& path, ExrChannels channels) {
+  return parse_exr(read_file(path), path, channels);
+}
+
+ExrImage parse_exr(std::string_view bytes, const std::string& name, ExrChannels channels) {
+  ExrSource source(bytes, name);
+  ExrImage image;
+  if (source.find_part(names(kMeanChannels))) {
+    source.read(requests(source, channels, image));
+    for (auto it = source.header().begin(); it != source.header().end(); ++it)
+      if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute()))
+        image.attributes[it.name()] = text->value();
+  } else {
+    image.mean.rgb = read_luminance(source);
   }
+  image.window = source.window();
+  for (Image* part : {&image.mean, &image.variance})
+    if (!part->empty()) part->width = image.window->columns(), part->height = image.window->rows();
+  if (image.mean.empty()) source.fail("it has no pixels");
+  if (Imf::hasEnvmap(source.header()))
+    image.is_cube_map = Imf::envmap(source.header()) != Imf::ENVMAP_LATLONG;
+  convert(source, image);
+  require_finite(name, image.mean);
+  return image;
 }
 
 std::string png_bytes(const Image& image, ClipAccount& account) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runtime/tracer/image.h"
@@ -21,6 +22,8 @@ struct ExrImage {
   // Says where the pixels lie (the data window) in the whole picture (the display window); they are all of it
   // if not given.
   std::optional<PixelWindow> window{};
+  bool is_cube_map = false;   // by the attribute envmap, which says that it is no lat-long map
+  bool is_converted = false;  // from other chromaticities than those of Rec.709
 };
 
 // Adds a picture as three layers: NAME.FIRST, NAME.SECOND, NAME.THIRD of `axes`, such as albedo.R or
@@ -34,9 +37,20 @@ Image extract_layers(const ExrImage& exr, const std::string& name, const std::st
 // attributes of the header.
 void write_exr(const std::string& path, const ExrImage& image);
 
-// Reads R, G, B of any pixel type as float, the variance where there is one, all other channels into layers,
-// all string attributes, and the window, shifted so that the whole picture begins at 0, 0.
-ExrImage read_exr(const std::string& path);
+bool is_exr(std::string_view bytes);
+
+// Says what to read of a file beside R, G and B.
+enum class ExrChannels { mean, mean_and_variance, all };
+
+// Reads R, G and B of any pixel type as float, the variance where there is one, all other channels into
+// layers, all string attributes, and the window, shifted so that the whole picture begins at 0, 0. Where the
+// header states other chromaticities than those of Rec.709 (up to 1e-4), the picture is converted, adapted to
+// D65 after Bradford, and has no variance. Files of Y, or of Y, RY and BY, give their R, G and B alone. Of
+// several parts the first one with R, G and B is read; of mip levels the largest. Throws Error naming the
+// file if it cannot be read, asks for too much memory, or has pixels whose R, G or B is not finite.
+ExrImage read_exr(const std::string& path, ExrChannels channels = ExrChannels::all);
+// Reads the same from the bytes of a file.
+ExrImage parse_exr(std::string_view bytes, const std::string& name, ExrChannels channels = ExrChannels::all);
 
 // Writes 8-bit sRGB after display_color() on every pixel. Negative components, which a PNG cannot hold, are
 // raised to 0: returns how often and how much light that added.

@@ -10,7 +10,7 @@
 #include <memory>
 #include <numbers>
 
-#include "runtime/tracer/image_io.h"
+#include "runtime/tracer/environment_map.h"
 #include "runtime/tracer/mesh_file.h"
 #include "runtime/tracer/scales.h"
 #include "runtime/tracer/sky.h"
@@ -91,9 +91,9 @@ auto load_named_file(const ConfigTable& table, Load load) {
 
 void scale_radiance(const ConfigTable& table, Image& map, double scale) {
   for (float& value : map.rgb) {
-    if (!(value >= 0 && scale * value <= kEmission.high))
+    if (!(scale * value <= kEmission.high))
       table.fail("file",
-                 fmt::format("holds the value {:g}; allowed: 0 to {:g} after scale", value, kEmission.high));
+                 fmt::format("holds the value {:g}; allowed: up to {:g} after scale", value, kEmission.high));
     value = static_cast<float>(scale * value);
   }
 }
@@ -122,7 +122,9 @@ void read_environment(const ConfigTable& table, Scene& scene) {
     scene.environment.color = scale * table.rgb("color", kEmission, Rgb());
     return;
   }
-  scene.environment.map = load_named_file(table, read_exr).mean;
+  EnvironmentMap loaded = load_named_file(table, load_environment_map);
+  scene.environment.map = std::move(loaded.map);
+  scene.warnings.insert(scene.warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
   scale_radiance(table, scene.environment.map, scale);
 }
 
@@ -252,9 +254,9 @@ Relief read_scales(const ConfigTable& table) {
 }
 
 Relief read_bump(const ConfigTable& table) {
-  const HeightMap map = load_named_file(table, load_height_map);
+  HeightMap map = load_named_file(table, load_height_map);
   const Point2 tiles = table.has("tiles") ? point2(table, "tiles", {1e-3, 1e5}) : Point2{1, 1};
-  return {.map = std::make_shared<HeightMap>(map),
+  return {.map = std::make_shared<HeightMap>(std::move(map)),
           .tiles = tiles,
           .height = table.number("height", {-2, 2}) / tiles.x};
 }

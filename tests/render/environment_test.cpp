@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/render/support.h"
 #include "tests/support/warps.h"
 
@@ -102,6 +104,27 @@ TEST(Environment, MeanRadianceIsThatOfEvenDirections) {
   // 5 standard errors: false alarm 6e-7. The sine at a row's centre is off by pi^2 / (24 * 12^2) = 0.3 %.
   EXPECT_NEAR(environment.mean_radiance(), found, 5 * error + 0.003 * found);
   EXPECT_LT(error, 0.005 * found);
+}
+
+// Sums of the largest floats pass the range of floats, and the smallest ones are denormal.
+TEST(Environment, HugeAndTinyMapsAreSampledWithoutOverflow) {
+  for (const float bright : {std::numeric_limits<float>::max(), std::numeric_limits<float>::denorm_min()})
+    for (const bool is_even : {false, true}) {
+      EnvironmentSource source;
+      source.map = Image(8, 4);
+      for (float& value : source.map.rgb) value = is_even ? bright : 0;
+      source.map.set(5, 2, Rgb(bright));
+      const Environment environment(source);
+      EXPECT_TRUE(std::isfinite(environment.mean_radiance()));
+      EXPECT_GT(environment.mean_radiance(), 0);
+      for (const double u : {0.01, 0.3, 0.7, 0.99}) {
+        const Vec3 direction = environment.sample({u, u});
+        EXPECT_NEAR(length(direction), 1, 1e-12);
+        const double pdf = environment.pdf(direction);
+        EXPECT_TRUE(std::isfinite(pdf) && pdf > 0) << pdf;
+        EXPECT_NEAR(environment.radiance(direction).g / bright, 1, 1e-6);
+      }
+    }
 }
 
 TEST(Environment, ConstantIsNotSampled) {

@@ -7,6 +7,7 @@
 
 #include "runtime/tracer/image_io.h"
 #include "sunbeam/detail/file.h"
+#include "tests/render/exr_files.h"
 #include "tests/render/support.h"
 
 namespace sunbeam {
@@ -92,6 +93,53 @@ TEST(HeightMap, ReadsPicturesOfThreeChannelsAndEightBits) {
   const HeightMap bytes = load_height_map(folder.file("a.png"));
   EXPECT_FLOAT_EQ(bytes.values[0], 137.0f / 255);  // the sRGB byte of 0.25, taken as it stands
   EXPECT_FLOAT_EQ(bytes.values[1], 1);
+}
+
+HeightMap heights(const ExrPart& part) { return parse_height_map(exr_file({part}), "a.exr"); }
+
+TEST(HeightMap, ChannelYOrRInTheDisplayWindow) {
+  ExrPart part;
+  part.channels = {{"Y", [](int x, int y) { return static_cast<float>(1 + x + 10 * y); }},
+                   {"R", constant(7)}};
+  EXPECT_EQ(heights(part).at(2, 1), 13);
+  part.corner = {1, 1};
+  part.display = {{0, 0}, {5, 2}};
+  const HeightMap map = heights(part);
+  ASSERT_EQ(map.width, 6);
+  ASSERT_EQ(map.height, 3);
+  for (int y = 0; y < 3; ++y)
+    for (int x = 0; x < 6; ++x) {
+      const bool is_inside = x >= 1 && x < 5 && y >= 1;
+      EXPECT_EQ(map.at(x, y), static_cast<float>(is_inside ? 1 + (x - 1) + 10 * (y - 1) : 0))
+          << x << " " << y;
+    }
+}
+
+// No chromaticities, no envmap: heights are numbers.
+TEST(HeightMap, WhatAnExrSaysAboutColoursDoesNotMatter) {
+  ExrPart part = rgb_part(2, 2, constant(0.5f), constant(9), constant(9));
+  part.type = Imf::HALF;
+  part.edit = [](Imf::Header& header) {
+    Imf::addChromaticities(header, {{0.713f, 0.293f}, {0.165f, 0.83f}, {0.128f, 0.044f}, {0.3f, 0.3f}});
+    Imf::addWhiteLuminance(header, 100);
+  };
+  EXPECT_EQ(heights(part).values, std::vector<float>(4, 0.5f));
+}
+
+// 16384 x 16384 floats are 1.07 GB, from a file of a few kB.
+TEST(HeightMap, HeadersThatClaimTooMuchAreRefused) {
+  ExrPart part;
+  part.width = 16384;
+  part.channels = {{"Y", constant(0)}};
+  const std::string bytes = exr_file({part});
+  for (const std::string& hostile :
+       {with_rows(bytes, "dataWindow", 0, 16383), with_most_rows(bytes, "dataWindow")}) {
+    const std::string message = error_of([&] { parse_height_map(hostile, "a.exr"); });
+    EXPECT_NE(message.find("data windows ask for"), std::string::npos) << message;
+  }
+  part.display = {{0, 0}, {16383, 16383}};
+  const std::string message = error_of([&] { heights(part); });
+  EXPECT_NE(message.find("of memory; allowed for a file of this size"), std::string::npos) << message;
 }
 
 TEST(HeightMap, BadFilesAreRefused) {

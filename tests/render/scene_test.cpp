@@ -193,10 +193,21 @@ TEST(Scene, EnvironmentFileIsLoadedAndScaled) {
   const std::string path =
       folder.write("a.toml", kCamera + kMaterial + kSphere + "[environment]\nfile = 'sky.exr'\nscale = 2\n");
   EXPECT_EQ(load_scene(path).environment.map.get(1, 1), Rgb(2, 4, 6));
+  EXPECT_TRUE(load_scene(path).warnings.empty());
 
   map.set(0, 0, Rgb(-1));
   write_exr(folder.file("sky.exr"), {map, {}, {}});
-  EXPECT_NE(error_of([&] { load_scene(path); }).find("holds the value -1; allowed: 0"), std::string::npos);
+  const Scene scene = load_scene(path);
+  EXPECT_EQ(scene.environment.map.get(0, 0), Rgb());
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("1 of 8 pixels have negative components"), std::string::npos)
+      << scene.warnings[0];
+
+  map.set(0, 0, Rgb(1e9));
+  write_exr(folder.file("sky.exr"), {map, {}, {}});
+  EXPECT_NE(
+      error_of([&] { load_scene(path); }).find("holds the value 1e+09; allowed: up to 1e+09 after scale"),
+      std::string::npos);
 }
 
 TEST(Scene, TheShippedScenesLoad) {
@@ -400,7 +411,7 @@ TEST(Scene, SkyBringsItsSun) {
 TEST(Scene, MissingEnvironmentFileIsNamed) {
   const std::string message =
       error_of([] { scene_from(kCamera + kMaterial + kSphere + "[environment]\nfile = 'missing.exr'\n"); });
-  EXPECT_NE(message.find("key 'environment.file': missing.exr: cannot read the EXR file"), std::string::npos)
+  EXPECT_NE(message.find("key 'environment.file': missing.exr: cannot read: No such file"), std::string::npos)
       << message;
 }
 

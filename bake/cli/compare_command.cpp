@@ -10,6 +10,7 @@
 #include "bake/compare/difference.h"
 #include "bake/compare/false_color.h"
 #include "bake/compare/flip.h"
+#include "bake/compare/rendering.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/file.h"
 
@@ -112,12 +113,24 @@ void note_missing_variance(const CompareOptions& options, const ExrImage& test, 
   message("note: {}; hence no confidence interval and no test against noise", what);
 }
 
+// A PNG holds what a display shows already.
+Image shown(const Rendering& rendering) {
+  return rendering.is_displayed ? rendering.picture.mean : displayed(rendering.picture.mean);
+}
+
+Rendering read_noted(const std::string& path) {
+  Rendering rendering = read_rendering(path);
+  if (!rendering.note.empty()) fmt::print(stderr, "note: {}\n", rendering.note);
+  return rendering;
+}
+
 }  // namespace
 
 int run_compare(const CompareOptions& options) {
   require_separate({options.test, options.reference}, {options.png});
   check_options(options);
-  const ExrImage test = read_rendering(options.test), reference = read_rendering(options.reference);
+  const Rendering a = read_noted(options.test), b = read_noted(options.reference);
+  const ExrImage &test = a.picture, &reference = b.picture;
   Comparison comparison;
   try {
     comparison.difference = difference(test, reference);
@@ -125,8 +138,7 @@ int run_compare(const CompareOptions& options) {
     throw Error(fmt::format("{} and {}: {}", options.test, options.reference, error.what()));
   }
   note_missing_variance(options, test, reference);
-  const std::vector<double> map =
-      flip(displayed(test.mean), displayed(reference.mean), options.pixels_per_degree);
+  const std::vector<double> map = flip(shown(a), shown(b), options.pixels_per_degree);
   comparison.flip = std::accumulate(map.begin(), map.end(), 0.0) / static_cast<double>(map.size());
 
   if (!options.png.empty())

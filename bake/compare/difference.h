@@ -48,12 +48,8 @@ struct Difference {
   std::optional<NoiseTest> noise;  // if both pictures have variance
 };
 
-// Reads a picture to compare by read_exr(). Throws Error, naming the file, also for values that are not
-// finite and for negative variances.
-ExrImage read_rendering(const std::string& path);
-
 // Measures the difference of two pictures, whose values must be as read_rendering() allows them. Throws Error
-// unless both have one size, that of at least one pixel.
+// unless both have one size, that of at least one pixel, and one place in the whole picture.
 Difference difference(const ExrImage& test, const ExrImage& reference);
 
 }  // namespace sunbeam

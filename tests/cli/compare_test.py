@@ -2,8 +2,10 @@
 
 import json
 import math
+import resource
 import struct
 import unittest
+import zlib
 
 import support
 
@@ -15,8 +17,8 @@ def attribute(name, kind, value):
     return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<I", len(value)) + value
 
 
-def exr_bytes(width, height, channels):
-    """An uncompressed EXR of 32-bit floats; channels: {name: one value a pixel or one for all}."""
+def exr_bytes(width, height, channels, more=b""):
+    """An uncompressed EXR of 32-bit floats; channels: {name: one value a pixel or one for all}; more attributes."""
     names = sorted(channels)
     box = struct.pack("<4i", 0, 0, width - 1, height - 1)
     listed = b"".join(n.encode() + b"\0" + struct.pack("<iI2i", 2, 0, 1, 1) for n in names) + b"\0"
@@ -25,7 +27,7 @@ def exr_bytes(width, height, channels):
     header += attribute("dataWindow", "box2i", box) + attribute("displayWindow", "box2i", box)
     header += attribute("lineOrder", "lineOrder", b"\0") + attribute("pixelAspectRatio", "float", struct.pack("<f", 1))
     header += attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0))
-    header += attribute("screenWindowWidth", "float", struct.pack("<f", 1)) + b"\0"
+    header += attribute("screenWindowWidth", "float", struct.pack("<f", 1)) + more + b"\0"
     size = 4 * width * len(names)
     first = len(header) + 8 * height
     offsets = b"".join(struct.pack("<Q", first + y * (8 + size)) for y in range(height))
@@ -37,6 +39,21 @@ def exr_bytes(width, height, channels):
             row = value[y * width:(y + 1) * width] if isinstance(value, list) else [value] * width
             lines += struct.pack(f"<{width}f", *row)
     return header + offsets + lines
+
+
+def png_bytes(width, height, color_type, bits, rows, *chunks):
+    """A PNG of these rows, which are bytes; chunks (kind, content) come before them."""
+    def chunk(kind, content):
+        return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+
+    header = struct.pack(">IIBBBBB", width, height, bits, color_type, 0, 0, 0)
+    data = zlib.compress(b"".join(b"\0" + row for row in rows))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + b"".join(chunk(*c) for c in chunks) + chunk(b"IDAT", data)
+            + chunk(b"IEND", b""))
+
+
+AP1 = struct.pack("<8f", 0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.32168, 0.33767)
+GREY, RGB = 0, 2  # colour types of PNG
 
 
 class CompareTest(support.CliTest):
@@ -114,6 +131,53 @@ class Figures(CompareTest):
         self.assertNotEqual(content, (self.folder / "flip.png").read_bytes())
 
 
+class Colours(CompareTest):
+    @classmethod
+    def prepare(cls):
+        cls.exr("half.exr", 0.5, width=3, height=2)
+
+    def png(self, name, value, *chunks, color_type=GREY, bits=8):
+        row = (bytes([value]) if bits == 8 else struct.pack(">H", value)) * (3 if color_type == GREY else 9)
+        return self.write(name, png_bytes(3, 2, color_type, bits, [row] * 2, *chunks))
+
+    def test_srgb_of_png_is_decoded_to_linear_light(self):
+        for bits, value in ((8, 188), (16, 188 * 257)):
+            for color_type in (GREY, RGB):
+                self.png("a.png", value, color_type=color_type, bits=bits)
+                result = self.succeed("compare", "a.png", "half.exr", "--json")
+                linear = ((188 / 255 + 0.055) / 1.055) ** 2.4
+                for bias in json.loads(result.out)["bias"]:
+                    self.assertAlmostEqual(bias, linear - 0.5, places=6)
+                self.assertIn("note: a.png: sRGB is decoded to linear light\n", result.err)
+
+    def test_flip_takes_a_png_as_what_is_displayed(self):
+        """The tone curve shows a rendered 1 as a light grey, and leaves a PNG alone."""
+        self.png("white.png", 255)
+        self.png("black.png", 0)
+        self.exr("white.exr", 1.0, width=3, height=2)
+        figures = self.figures("white.png", "white.exr")
+        self.assertEqual(figures["rmse"], 0)
+        self.assertGreater(figures["flip"], 0.05)
+        self.assertEqual(self.figures("white.png", "black.png")["bias"], [1] * 3)
+
+    def test_png_of_other_colours(self):
+        self.png("linear.png", 9, (b"gAMA", struct.pack(">I", 100000)))
+        self.refuse("compare", "linear.png", "half.exr", naming=["linear.png", "gAMA is 1; allowed: 0.45455"])
+        wide = [0.3127, 0.329, 0.708, 0.292, 0.17, 0.797, 0.131, 0.046]
+        self.png("wide.png", 9, (b"cHRM", struct.pack(">8I", *(round(1e5 * c) for c in wide))))
+        self.refuse("compare", "half.exr", "wide.png", naming=["wide.png", "cHRM"])
+        self.png("usual.png", 9, (b"gAMA", struct.pack(">I", 45455)))
+        self.succeed("compare", "half.exr", "usual.png")
+
+    def test_chromaticities_are_converted(self):
+        channels = {"R": 0.25, "G": 0.1, "B": 0.025, **dict.fromkeys(VARIANCE, 1.0)}
+        self.write("ap1.exr", exr_bytes(3, 2, channels, attribute("chromaticities", "chromaticities", AP1)))
+        self.exr("rec709.exr", 0, 1.0, width=3, height=2, R=0.362, G=0.08126, B=0.00993)
+        result = self.succeed("compare", "ap1.exr", "rec709.exr", "--json", "--max-rmse", "2e-5")
+        self.assertIn("note: ap1.exr: the chromaticities of its header are converted to Rec.709, but no variance\n", result.err)
+        self.assertNotIn("bias_z", json.loads(result.out))
+
+
 class Limits(CompareTest):
     @classmethod
     def prepare(cls):
@@ -187,6 +251,13 @@ class Renderings(CompareTest):
             cls.write(f"{name}.toml", SCENE.format(albedo=albedo))
             support.succeed_in(cls.folder, "render", f"{name}.toml", "-o", f"{name}.exr", "--material", "diffuse", "--seed", seed)
 
+    def test_other_windows_are_refused(self):
+        for name, window in (("left", "0,0,16,24"), ("right", "16,0,32,24"), ("low", "0,1,16,24")):
+            self.succeed("render", "a.toml", "-o", f"{name}.exr", "--material", "diffuse", "--spp", "1", "--crop", window)
+        self.refuse("compare", "left.exr", "right.exr", naming=["left.exr and right.exr", "(0, 0) to (16, 24) of 32 x 24", "(16, 0)"])
+        self.refuse("compare", "left.exr", "low.exr", naming=["16 x 24", "16 x 23"])
+        self.succeed("compare", "left.exr", "left.exr", "--max-rmse", "0")
+
     def test_other_seeds_differ_by_noise(self):
         figures = self.figures("a.exr", "b.exr", "--max-bias-z", "4")
         self.assertGreater(figures["rmse"], 0)
@@ -218,6 +289,20 @@ class Refusals(CompareTest):
             for arguments in ((name, "one.exr"), ("one.exr", name)):
                 with self.subTest(arguments=arguments):
                     self.refuse("compare", *arguments, naming=needles)
+
+    def test_a_header_that_claims_too_many_rows(self):
+        """2147483644 rows in a file of a few kB, refused within a gigabyte and 20 s."""
+        box = struct.pack("<4i", 0, 0, 11, 9)
+        content = (self.folder / "one.exr").read_bytes()
+        self.write("rows.exr", content.replace(box, struct.pack("<4i", 0, -1073741822, 11, 1073741821), 1))
+        self.write("rows.toml", SCENE.format(albedo=0.5).replace("color = 0.2", 'file = "rows.exr"'))
+        self.write("bump.toml", SCENE.format(albedo=0.5).replace(
+            'type = "skin"', 'type = "skin"\nbump = { file = "rows.exr", height = 0.1 }'))
+        for arguments in (("compare", "rows.exr", "one.exr"), ("render", "rows.toml", "-o", "o.exr", "--material", "diffuse"),
+                          ("render", "bump.toml", "-o", "o.exr", "--material", "diffuse")):
+            with self.subTest(arguments=arguments):
+                self.refuse(*arguments, naming=["rows.exr", "data windows ask for"], preexec_fn=support.limit_cpu_seconds(20))
+        self.assertLess(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss, 1000000)  # kB, of the largest child
 
     def test_values(self):
         values = [1.0] * 120

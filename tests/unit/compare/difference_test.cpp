@@ -4,6 +4,7 @@
 
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/rng.h"
+#include "tests/support/error_of.h"
 
 namespace sunbeam {
 namespace {
@@ -117,6 +118,23 @@ TEST(Difference, NormalNoiseIsBeyondAsOftenAsStated) {
   EXPECT_NEAR(noise.pixels.share(), p, 5 * std::sqrt(p / 270000));
   EXPECT_NEAR(noise.blocks.share(), p, 5 * std::sqrt(p / 2700));
   for (int channel = 0; channel < 3; ++channel) EXPECT_LT(std::abs(noise.bias_z[channel]), 5);
+}
+
+// Two crops of one picture have a size in common and no pixel.
+TEST(Difference, OfOtherWindowsIsRefused) {
+  const auto refusal = [](const PixelWindow& a, const PixelWindow& b) {
+    const ExrImage test{filled(8, 12, Rgb(1)), {}, {}, {}, a},
+        reference{filled(8, 12, Rgb(1)), {}, {}, {}, b};
+    return test::error_of([&] { difference(test, reference); });
+  };
+  const PixelWindow left{16, 12, 0, 0, 8, 12}, right{16, 12, 8, 0, 16, 12}, of_more{16, 24, 0, 0, 8, 12};
+  EXPECT_EQ(refusal(left, left), "");
+  EXPECT_EQ(
+      refusal(left, right),
+      "the pictures are the pixels (0, 0) to (8, 12) of 16 x 12 and (8, 0) to (16, 12) of 16 x 12; allowed: "
+      "one window");
+  EXPECT_NE(refusal(left, of_more), "");
+  EXPECT_NE(refusal(left, PixelWindow::whole(8, 12)), "");
 }
 
 TEST(Difference, OfOtherSizesIsRefused) {

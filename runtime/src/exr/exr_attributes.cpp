@@ -56,6 +56,14 @@ bool is_whole_list_of_texts(std::string_view value) {
   return true;
 }
 
+// The library reads channels up to an empty name, whatever size the file states.
+bool is_whole_list_of_channels(std::string_view value) {
+  constexpr std::size_t kBytesOfChannel = 16;
+  ExrBytes bytes(value);
+  while (!bytes.name().empty()) bytes.take(kBytesOfChannel);
+  return bytes.left() == 0;
+}
+
 void check_value(const std::string& name, const ExrAttribute& attribute) {
   const std::string what = "attribute '" + printable(name) + "' of type '" + printable(attribute.type) + "'";
   const std::size_t expected = size_of_type(attribute.type);
@@ -66,6 +74,8 @@ void check_value(const std::string& name, const ExrAttribute& attribute) {
     throw Error(what + " has another size than its pixels");
   if (attribute.type == "stringvector" && !is_whole_list_of_texts(attribute.value))
     throw Error(what + " holds a text of negative length");
+  if (attribute.type == "chlist" && !is_whole_list_of_channels(attribute.value))
+    throw Error(what + " is not a list of channels");
 }
 
 }  // namespace

@@ -164,6 +164,19 @@ TEST(ExrHeaders, AttributesOfAnotherSizeThanTheirType) {
   EXPECT_EQ(error_of(header), "");
 }
 
+// The library reads such a list up to its empty name and takes what follows for further attributes.
+TEST(ExrHeaders, ListsOfChannelsThatEndElsewhere) {
+  for (const std::string& value :
+       {channel("Y"), channel("Y") + '\0' + "and more", std::string(), std::string("Y")}) {
+    Header header;
+    header.more = attribute("mine", "chlist", value);
+    EXPECT_NE(error_of(header), "");
+  }
+  Header header;
+  header.more = attribute("mine", "chlist", channel("Y") + '\0');
+  EXPECT_EQ(error_of(header), "");
+}
+
 TEST(ExrHeaders, AttributesThatTheFileHasNoRoomFor) {
   for (const int size : {2000000000, -1, 5000}) {
     Header header;

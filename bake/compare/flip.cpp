@@ -1,5 +1,6 @@
 #include "bake/compare/flip.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -85,10 +86,18 @@ Plane filter_columns(const Plane& in, const Kernel& kernel) {
   return out;
 }
 
+// Filters end at three standard deviations.
+int csf_radius(double pixels_per_degree) {
+  return static_cast<int>(std::ceil(3 * std::sqrt(kWidestB / (2 * kPi * kPi)) * pixels_per_degree));
+}
+double feature_sigma(double pixels_per_degree) { return 0.5 * kFeatureWidthDeg * pixels_per_degree; }
+int feature_radius(double pixels_per_degree) {
+  return static_cast<int>(std::ceil(3 * feature_sigma(pixels_per_degree)));
+}
+
 // The terms are Gaussians, so that each is a filter along rows and one along columns.
 Plane filter_csf(const Plane& in, std::span<const CsfTerm> terms, double pixels_per_degree) {
-  const int radius =
-      static_cast<int>(std::ceil(3 * std::sqrt(kWidestB / (2 * kPi * kPi)) * pixels_per_degree));
+  const int radius = csf_radius(pixels_per_degree);
   Plane out(in.width, in.height);
   double total = 0;
   for (const CsfTerm& term : terms) {
@@ -157,8 +166,8 @@ std::vector<double> features(const Plane& lightness, const Kernel& detector, con
 
 void add_features(Appearance& result, Plane lightness, double pixels_per_degree) {
   for (double& value : lightness.values) value = (value + 16) / 116;
-  const double sigma = 0.5 * kFeatureWidthDeg * pixels_per_degree;
-  const int radius = static_cast<int>(std::ceil(3 * sigma));
+  const double sigma = feature_sigma(pixels_per_degree);
+  const int radius = feature_radius(pixels_per_degree);
   const auto gaussian = [&](double x) { return std::exp(-square(x / sigma) / 2); };
   const Kernel blur = normalized(make_kernel(radius, gaussian));
   const Kernel edge = normalized(make_kernel(radius, [&](double x) { return -x * gaussian(x); }));
@@ -197,9 +206,7 @@ double remapped(double distance, double most) {
   return kTop + (1 - kTop) * (distance - center) / (most - center);
 }
 
-}  // namespace
-
-std::vector<double> flip(const Image& test, const Image& reference, double pixels_per_degree) {
+std::vector<double> flip_at_once(const Image& test, const Image& reference, double pixels_per_degree) {
   const Colorimetry colorimetry;
   const Appearance a = appearance(test, pixels_per_degree, colorimetry);
   const Appearance b = appearance(reference, pixels_per_degree, colorimetry);
@@ -211,6 +218,34 @@ std::vector<double> flip(const Image& test, const Image& reference, double pixel
     const double feature = std::max(std::abs(a.edges[k] - b.edges[k]), std::abs(a.points[k] - b.points[k])) /
                            std::numbers::sqrt2;
     values.push_back(std::pow(color, 1 - std::pow(feature, kFeatureExponent)));
+  }
+  return values;
+}
+
+// Rows first to last, last left out; those beyond a border are the outermost ones.
+Image rows_of(const Image& image, int first, int last) {
+  Image rows(image.width, last - first);
+  const std::size_t size = 3 * static_cast<std::size_t>(image.width);
+  for (int y = first; y < last; ++y)
+    std::copy_n(image.rgb.data() + size * static_cast<std::size_t>(std::clamp(y, 0, image.height - 1)), size,
+                rows.rgb.data() + size * static_cast<std::size_t>(y - first));
+  return rows;
+}
+
+}  // namespace
+
+// Bands of rows bound the memory. No filter reaches farther than the rows that are added above and below.
+std::vector<double> flip(const Image& test, const Image& reference, double pixels_per_degree) {
+  constexpr int kRows = 128;
+  const int reach = std::max(csf_radius(pixels_per_degree), feature_radius(pixels_per_degree));
+  const auto width = static_cast<std::ptrdiff_t>(test.width);
+  std::vector<double> values;
+  values.reserve(test.rgb.size() / 3);
+  for (int y = 0; y < test.height; y += kRows) {
+    const int rows = std::min(kRows, test.height - y), first = y - reach, last = y + rows + reach;
+    const std::vector<double> band =
+        flip_at_once(rows_of(test, first, last), rows_of(reference, first, last), pixels_per_degree);
+    values.insert(values.end(), band.begin() + reach * width, band.begin() + (reach + rows) * width);
   }
   return values;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "runtime/tracer/png_source.h"
 #include "sunbeam/core/error.h"
@@ -11,6 +12,9 @@
 
 namespace sunbeam {
 namespace {
+
+// What is made of a pixel: what is displayed, as floats, and half of the map of FLIP.
+constexpr std::uint64_t kBytesOfComparison = 3 * sizeof(float) + sizeof(double) / 2;
 
 void require_variance(const std::string& name, const Image& variance) {
   const auto bad = std::find_if(variance.rgb.begin(), variance.rgb.end(),
@@ -37,7 +41,7 @@ void require_srgb(const std::string& name, const PngNumbers& png) {
 }
 
 Rendering read_png(std::string_view bytes, const std::string& name) {
-  const PngNumbers png = parse_png(bytes, name, 3 * sizeof(float));
+  const PngNumbers png = parse_png(bytes, name, 3 * sizeof(float) + kBytesOfComparison);
   require_srgb(name, png);
   Rendering result{.picture = {}, .is_displayed = true, .note = {}};
   result.note = name + ": sRGB is decoded to linear light";
@@ -64,6 +68,8 @@ Rendering parse_rendering(std::string_view bytes, const std::string& name) {
     throw Error(name + ": cannot read the picture: found neither EXR nor PNG; allowed: one of them");
   Rendering result{
       .picture = parse_exr(bytes, name, ExrChannels::mean_and_variance), .is_displayed = false, .note = {}};
+  const Image& mean = result.picture.mean;
+  require_picture_memory(name, mean.width, mean.height, 3 * sizeof(float) + kBytesOfComparison, bytes.size());
   require_variance(name, result.picture.variance);
   if (result.picture.is_converted)
     result.note = name + ": the chromaticities of its header are converted to Rec.709, but no variance";

@@ -81,6 +81,25 @@ TEST(Flip, AgreesWithTwoDimensionalFilters) {
   EXPECT_NEAR(far[12 * 24 + 20], 0.9570061712353407, 1e-5);
 }
 
+// High pictures are filtered in bands, wide ones at once; FLIP does not tell columns from rows.
+TEST(Flip, BandsOfRowsDoNotShow) {
+  constexpr int kLong = 300, kShort = 11;
+  const auto test = [](int x, int y) {
+    return transform(pattern(x % 24, y % 16), [](double c) { return 1 - c; });
+  };
+  const auto reference = [](int x, int y) { return pattern((x * x) % 24, (3 * y) % 16); };
+  const auto turned = [](auto color) { return [=](int x, int y) { return color(y, x); }; };
+  for (const double pixels_per_degree : {20.0, 67.0, 300.0}) {
+    const auto wide =
+        flip(image_of(kLong, kShort, test), image_of(kLong, kShort, reference), pixels_per_degree);
+    const auto high = flip(image_of(kShort, kLong, turned(test)), image_of(kShort, kLong, turned(reference)),
+                           pixels_per_degree);
+    for (std::size_t x = 0; x < kLong; ++x)
+      for (std::size_t y = 0; y < kShort; ++y)
+        ASSERT_NEAR(high[x * kShort + y], wide[y * kLong + x], 1e-6) << x << " " << y;
+  }
+}
+
 TEST(Flip, NeedsNoMorePixelsThanOne) {
   const auto one = [](double grey) { return image_of(1, 1, [&](int, int) { return Rgb(grey); }); };
   EXPECT_NEAR(flip(one(1), one(0), 67)[0], flip(filled(Rgb(1)), filled(Rgb(0)), 67)[0], 1e-9);

@@ -66,10 +66,8 @@ Rendering parse_rendering(std::string_view bytes, const std::string& name) {
   if (is_png(bytes)) return read_png(bytes, name);
   if (!is_exr(bytes))
     throw Error(name + ": cannot read the picture: found neither EXR nor PNG; allowed: one of them");
-  Rendering result{
-      .picture = parse_exr(bytes, name, ExrChannels::mean_and_variance), .is_displayed = false, .note = {}};
-  const Image& mean = result.picture.mean;
-  require_picture_memory(name, mean.width, mean.height, 3 * sizeof(float) + kBytesOfComparison, bytes.size());
+  Rendering result;
+  result.picture = parse_exr(bytes, name, ExrChannels::mean_and_variance, kBytesOfComparison);
   require_variance(name, result.picture.variance);
   if (result.picture.is_converted)
     result.note = name + ": the chromaticities of its header are converted to Rec.709, but no variance";

@@ -68,7 +68,7 @@ EnvironmentMap parse_environment_map(std::string_view bytes, const std::string& 
     if (!is_exr(bytes))
       throw Error(name +
                   ": cannot read the environment: found neither EXR nor Radiance; allowed: one of them");
-    ExrImage exr = parse_exr(bytes, name, ExrChannels::mean);
+    ExrImage exr = parse_exr(bytes, name, ExrChannels::mean, kBytesOfDistribution);
     if (exr.is_cube_map) throw Error(name + ": the attribute envmap says cube map; allowed: latlong");
     place(exr, name, bytes.size(), result);
   }

@@ -124,15 +124,16 @@ PixelWindow ExrSource::window() const {
           from_corner(part.max.x + 1L, whole.min.x),  from_corner(part.max.y + 1L, whole.min.y)};
 }
 
-void ExrSource::require_memory(int width, int height, std::uint64_t bytes_per_pixel) const {
-  require_picture_memory(name_, width, height, bytes_per_pixel, bytes_.size());
+void ExrSource::require_memory(std::uint64_t bytes_per_pixel) const {
+  const PixelWindow w = window();
+  require_picture_memory(name_, w.columns(), w.rows(), bytes_per_pixel, bytes_.size());
 }
 
 void ExrSource::read(const std::vector<ExrRequest>& requests) {
   const PixelWindow w = window();
   std::size_t channels = 0;
   for (const ExrRequest& request : requests) channels += request.channels.size();
-  require_memory(w.columns(), w.rows(), channels * sizeof(float));
+  require_memory(channels * sizeof(float));
   Imf::FrameBuffer buffer;
   const Imath::Box2i data = header().dataWindow();
   for (const ExrRequest& request : requests) {
@@ -150,7 +151,7 @@ void ExrSource::read(const std::vector<ExrRequest>& requests) {
 std::vector<float> ExrSource::read_luminance_chroma() {
   if (part_ != 0) fail("a later part holds Y, RY and BY; allowed: the first one, or R, G and B");
   const PixelWindow w = window();
-  require_memory(w.columns(), w.rows(), sizeof(Imf::Rgba) + 3 * sizeof(float));
+  require_memory(sizeof(Imf::Rgba) + 3 * sizeof(float));
   const std::size_t width = static_cast<std::size_t>(w.columns());
   std::vector<Imf::Rgba> pixels(width * static_cast<std::size_t>(w.rows()));
   const Imath::Box2i data = header().dataWindow();

@@ -42,11 +42,10 @@ class ExrSource {
   bool has_channel(const std::string& name) const;
   // Returns the data window in the display window. It may reach beyond.
   PixelWindow window() const;
-  // Reads values of any pixel type as float, of mip-mapped tiles the largest level.
+  // Throws Error if so many bytes for every pixel of the data window are more than the file may ask for.
+  void require_memory(std::uint64_t bytes_per_pixel) const;
+  // Reads values of any pixel type as float, of mip-mapped tiles the largest level. Asks for their memory.
   void read(const std::vector<ExrRequest>& requests);
-  // Throws Error if pictures of this size with so many bytes a pixel are more than the file may ask for.
-  void require_memory(int width, int height, std::uint64_t bytes_per_pixel) const;
-
   // Reads R, G and B, interleaved, of a part that holds Y, RY and BY.
   std::vector<float> read_luminance_chroma();
 

@@ -88,12 +88,14 @@ std::vector<float> grey_pixels(const std::vector<float>& luminance) {
 }
 
 // Of a file without R, G and B.
-std::vector<float> read_luminance(ExrSource& source) {
-  if (source.find_part({"Y", "RY", "BY"}, true)) return source.read_luminance_chroma();
+std::vector<float> read_luminance(ExrSource& source, std::uint64_t more_bytes_per_pixel) {
+  if (source.find_part({"Y", "RY", "BY"}, true)) {
+    source.require_memory(3 * sizeof(float) + more_bytes_per_pixel);
+    return source.read_luminance_chroma();
+  }
   if (!source.find_part({"Y"})) source.fail_for_channels("R, G and B must be there, or Y, at every pixel");
+  source.require_memory(4 * sizeof(float) + more_bytes_per_pixel);
   std::vector<float> luminance;
-  const PixelWindow w = source.window();
-  source.require_memory(w.columns(), w.rows(), 4 * sizeof(float));
   source.read({{{"Y"}, &luminance}});
   return grey_pixels(luminance);
 }
@@ -213,16 +215,18 @@ ExrImage read_exr(const std::string& path, ExrChannels channels) {
   return parse_exr(read_file(path), path, channels);
 }
 
-ExrImage parse_exr(std::string_view bytes, const std::string& name, ExrChannels channels) {
+ExrImage parse_exr(std::string_view bytes, const std::string& name, ExrChannels channels,
+                   std::uint64_t more_bytes_per_pixel) {
   ExrSource source(bytes, name);
   ExrImage image;
   if (source.find_part(names(kMeanChannels))) {
+    source.require_memory(3 * sizeof(float) + more_bytes_per_pixel);
     source.read(requests(source, channels, image));
     for (auto it = source.header().begin(); it != source.header().end(); ++it)
       if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute()))
         image.attributes[it.name()] = text->value();
   } else {
-    image.mean.rgb = read_luminance(source);
+    image.mean.rgb = read_luminance(source, more_bytes_per_pixel);
   }
   image.window = source.window();
   for (Image* part : {&image.mean, &image.variance})

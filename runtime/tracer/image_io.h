@@ -2,6 +2,7 @@
 // and renamed, so a reader never sees half a picture. All functions throw Error naming the file.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -49,8 +50,9 @@ enum class ExrChannels { mean, mean_and_variance, all };
 // several parts the first one with R, G and B is read; of mip levels the largest. Throws Error naming the
 // file if it cannot be read, asks for too much memory, or has pixels whose R, G or B is not finite.
 ExrImage read_exr(const std::string& path, ExrChannels channels = ExrChannels::all);
-// Reads the same from the bytes of a file.
-ExrImage parse_exr(std::string_view bytes, const std::string& name, ExrChannels channels = ExrChannels::all);
+// Reads the same from the bytes of a file, if there is memory for what the caller makes of a pixel, too.
+ExrImage parse_exr(std::string_view bytes, const std::string& name, ExrChannels channels = ExrChannels::all,
+                   std::uint64_t more_bytes_per_pixel = 0);
 
 // Writes 8-bit sRGB after display_color() on every pixel. Negative components, which a PNG cannot hold, are
 // raised to 0: returns how often and how much light that added.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "runtime/tracer/image_io.h"
+#include "sunbeam/core/read_limit.h"
 #include "tests/render/exr_files.h"
 #include "tests/render/support.h"
 
@@ -212,6 +213,19 @@ TEST(ExrPicture, HeadersThatClaimTooMuchAreRefused) {
   expect_contains(refusal(with_rows(bytes, "dataWindow", 0, 500000000)), "data windows ask for");
   expect_contains(refusal(with_rows(bytes, "dataWindow", 0, 2147483643)), "dataWindow");
   for (std::size_t size = 0; size < bytes.size(); ++size) refusal(bytes.substr(0, size));
+}
+
+// An environment has a distribution beside its pixels, a comparison the map of FLIP.
+TEST(ExrPicture, MemoryOfTheCallerCounts) {
+  ExrPart grey;
+  grey.channels = {{"Y", constant(1)}};
+  for (const ExrPart& part : {grey_part(4, 3, 1), grey}) {
+    const std::string bytes = exr_file({part});
+    const std::uint64_t limit = read_limit(bytes.size());
+    EXPECT_EQ(parse_exr(bytes, "a.exr", ExrChannels::mean, limit / 12 - 16).mean.width, 4);
+    const std::string message = error_of([&] { parse_exr(bytes, "a.exr", ExrChannels::mean, limit / 12); });
+    expect_contains(message, "a.exr: the picture of 4 x 3 pixels asks for");
+  }
 }
 
 // What is not asked for takes no memory.

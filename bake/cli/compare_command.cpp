@@ -120,7 +120,7 @@ Image shown(const Rendering& rendering) {
 
 Rendering read_noted(const std::string& path) {
   Rendering rendering = read_rendering(path);
-  if (!rendering.note.empty()) fmt::print(stderr, "note: {}\n", rendering.note);
+  if (!rendering.note.empty()) message("note: {}", rendering.note);
   return rendering;
 }
 

@@ -227,8 +227,8 @@ void add_render(CLI::App& app, RenderOptions& o, int& exit_code) {
 void add_compare(CLI::App& app, CompareOptions& o, int& exit_code) {
   CLI::App* command = add_command(app, "compare", "Measure how far a rendered image is from a reference",
                                   "sunbeam compare table.exr live.exr --max-bias-z 4 --png flip.png");
-  command->add_option("test", o.test, "Image to judge (.exr)")->required()->check(file_path());
-  command->add_option("reference", o.reference, "Image to hold it against (.exr)")
+  command->add_option("test", o.test, "Image to judge (.exr, .png)")->required()->check(file_path());
+  command->add_option("reference", o.reference, "Image to hold it against (.exr, .png)")
       ->required()
       ->check(file_path());
   command->add_option("--png", o.png, "Write FLIP of every pixel to this picture (.png): black 0, yellow 1")

@@ -44,7 +44,9 @@ TEST(Leftovers, AreRemovedByTheNextRunForTheSameFile) {
   write_half_and_die(folder.file("f.exr"));
   ASSERT_EQ(folder.names().size(), 2u);
   for (const std::string& name : folder.names())
-    if (name != "f.exr") EXPECT_THAT(name, MatchesRegex("\\.f\\.exr\\.[a-z2-7]{12}\\.sunbeam-tmp"));
+    if (name != "f.exr") {
+      EXPECT_THAT(name, MatchesRegex("\\.f\\.exr\\.[a-z2-7]{12}\\.sunbeam-tmp"));
+    }
   EXPECT_EQ(read_file(folder.file("f.exr")), "old");
   write_file_atomically(folder.file("other"), "x");  // of another file
   EXPECT_EQ(folder.names().size(), 3u);

@@ -102,7 +102,7 @@ TEST(Text, WholeNumbersAreDigitsAlone) {
 TEST(Text, PlainTextIsUtf8WithoutControlCharacters) {
   for (const char* text : {"", "a b\tc\n", "\u00e4\u20ac\U0001f40d\u00a0", "\uffff"})
     EXPECT_TRUE(is_plain_text(text)) << text;
-  for (const std::string text :
+  for (const std::string& text :
        {std::string("\0", 1), std::string("\x1b[31m"), std::string("\r"), std::string("\x7f"),
         std::string("\xc2\x85"),                                                                 // U+0085
         std::string("\xff"), std::string("\xc3"), std::string("\x80"), std::string("\xe2\x82"),  // cut short

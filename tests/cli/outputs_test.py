@@ -137,11 +137,11 @@ class Devices(OutputsTest):
         self.link("zero.exr", "/dev/zero")
         self.link("nowhere.exr", "nothing")
         (self.folder / "folder.exr").mkdir()
-        for name, reason in (("zero.exr", "cannot read: no end after 1000 MB"),
+        for name, reason in (("zero.exr", "cannot read: no end after 1100 MB"),
                              ("nowhere.exr", "cannot read: No such file"),
                              ("folder.exr", "cannot read: it is a folder"), ("", "found ''; allowed: a path")):
             with self.subTest(name=name):
-                self.check_refusal(self.sunbeam("info", name), f"{name}: {reason}")
+                self.check_refusal(self.sunbeam("info", name, "--max-memory", "1.1"), f"{name}: {reason}")
 
 
 class Links(OutputsTest):

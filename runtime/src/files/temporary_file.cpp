@@ -171,12 +171,16 @@ bool copy_access(const std::string& path, const std::string& like) {
 
 bool copy_access(const std::string& path, const std::string& like) {
   struct stat old {};
+  struct stat made {};
   if (::stat(like.c_str(), &old) != 0 || !S_ISREG(old.st_mode)) return true;
-  mode_t mode = old.st_mode & 0777;
-  if (::chown(path.c_str(), old.st_uid, old.st_gid) != 0 &&
-      ::chown(path.c_str(), static_cast<uid_t>(-1), old.st_gid) != 0)
-    mode &= ~mode_t{070};
-  return ::chmod(path.c_str(), mode) == 0;
+  if (::stat(path.c_str(), &made) != 0) return false;
+  constexpr auto kSame = static_cast<uid_t>(-1);
+  [[maybe_unused]] const bool has_owner =
+      made.st_uid == old.st_uid || ::chown(path.c_str(), old.st_uid, kSame) == 0;
+  const bool has_group = made.st_gid == old.st_gid || ::chown(path.c_str(), kSame, old.st_gid) == 0;
+  const mode_t mode = old.st_mode & (has_group ? 0777 : 0707);
+  // Some file systems have no modes to change.
+  return ::chmod(path.c_str(), mode) == 0 || (made.st_mode & 0777 & ~mode) == 0;
 }
 
 #endif

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <filesystem>
@@ -133,6 +134,24 @@ TEST(File, ReplacedFileKeepsItsModeAndNewOneFollowsTheUmask) {
     EXPECT_EQ(read_file(path), "new");
     fs::remove(path);
   }
+}
+
+// Only root can give files away; for others the file is their own before and after.
+TEST(File, ReplacedFileKeepsItsOwner) {
+  const ScratchFolder folder;
+  const std::string path = folder.file("f");
+  write_file_atomically(path, "old");
+  if (::geteuid() == 0) ASSERT_EQ(::chown(path.c_str(), 65534, 65534), 0);
+  struct stat before {};
+  struct stat after {};
+  ASSERT_EQ(::stat(path.c_str(), &before), 0);
+  write_file_atomically(path, "new");
+  ASSERT_EQ(::stat(path.c_str(), &after), 0);
+  EXPECT_EQ(after.st_mode, before.st_mode);
+#ifndef SUNBEAM_PORTABLE
+  EXPECT_EQ(after.st_uid, before.st_uid);
+  EXPECT_EQ(after.st_gid, before.st_gid);
+#endif
 }
 
 TEST(File, SymbolicLinksStayLinksAndHardLinksKeepTheOldContents) {

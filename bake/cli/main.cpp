@@ -313,7 +313,7 @@ void refuse_unknown(const CLI::App& app, int argc, char** argv) {
   const auto command =
       std::find_if(commands.begin(), commands.end(), [&](auto* c) { return c->get_name() == first; });
   if (command != commands.end()) {
-    for (int k = 2; k < argc; ++k) refuse_unknown_option(**command, argv[k]);
+    for (int k = 2; k < argc && argv[k] != std::string("--"); ++k) refuse_unknown_option(**command, argv[k]);
     return;
   }
   std::vector<std::string> names;

@@ -97,10 +97,37 @@ class Mistakes(support.CliTest):
             (("verify", "table.exr", "--points", "0"), ["--points", "0", "1"]),
             (("render", "scene.toml", "-o", "i.exr", "--material", "wood"), ["wood", "table", "live", "diffuse"]),
             (("render", "scene.toml", "-o", "i.exr", "--spp", "0"), ["--spp", "0", "1"]),
+            (("render", "scene.toml", "-o", "i.exr", "--noise", "nan"), ["--noise", "nan"]),
+            (("render", "scene.toml", "-o", "i.exr", "--watch=-1"), ["--watch", "-1"]),
+            (("info", "tiny.toml", "--max-memory", "0.5"), ["--max-memory", "0.5", "1 to 1e+06"]),
         ]
         for arguments, needles in cases:
             with self.subTest(arguments=arguments):
                 self.refuse(*arguments, naming=needles)
+
+
+class Words(support.CliTest):
+    def test_a_file_whose_name_looks_like_an_option(self):
+        for name in ("-t.toml", "--json"):
+            self.write(name, support.TINY_RECIPE)
+        self.succeed("info", "--", "-t.toml")
+        self.assertIn('"recipe_hash"', self.succeed("info", "--json", "--", "-t.toml").out)
+        self.succeed("bake", "--output=-t.exr", "--preview", "--", "-t.toml")
+        self.assertTrue((self.folder / "-t.exr").is_file())
+
+    def test_options_without_a_value_and_twice(self):
+        for arguments, needles in (
+                (("info", "tiny.toml", "--json="), ["--json", "found ''"]),
+                (("render", "tiny.toml", "-o", "a.exr", "--watch="), ["--watch", "found ''"]),
+                (("mesh", "sphere", "-o", "a.ply", "-o", "b.ply"), ["--output", "received 2"]),
+                (("mesh", "sphere", "-o", ""), ["--output", "found ''; allowed: a path"])):
+            with self.subTest(arguments=arguments):
+                self.refuse(*arguments, naming=needles)
+
+    def test_control_characters_are_escaped(self):
+        for arguments in (("info", "a\x1b[31m\n.exr"), ("bake", "--\x1b[31m\n"), ("\x1b[31m\n",)):
+            with self.subTest(arguments=arguments):
+                self.refuse(*arguments, naming=["\\x1b[31m\\n"])
 
 
 class Numbers(support.CliTest):

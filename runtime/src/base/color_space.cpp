@@ -3,6 +3,7 @@
 #include <string>
 
 #include "sunbeam/core/error.h"
+#include "sunbeam/detail/text.h"
 
 namespace sunbeam {
 inline namespace v1 {
@@ -54,7 +55,7 @@ std::string_view to_string(ColorSpace space) { return space == ColorSpace::acesc
 ColorSpace color_space_from(std::string_view name) {
   for (const ColorSpace space : {ColorSpace::rec709, ColorSpace::acescg})
     if (name == to_string(space)) return space;
-  throw Error("found '" + std::string(name) + "'; allowed: rec709, acescg");
+  throw Error("found '" + shortened(name) + "'; allowed: rec709, acescg");
 }
 
 Vec3 white(ColorSpace space) { return tristimulus(definition(space).white); }

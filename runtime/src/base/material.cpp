@@ -34,7 +34,7 @@ const NumericKey* find_numeric(std::string_view key) {
 }
 
 [[noreturn]] void refuse(std::string_view key, const std::string& found, const std::string& allowed) {
-  throw Error("key '" + std::string(key) + "': found '" + found + "'; allowed: " + allowed);
+  throw Error("key '" + std::string(key) + "': found '" + shortened(found) + "'; allowed: " + allowed);
 }
 
 // One value, or `count` values separated by ';'. All inside the interval.

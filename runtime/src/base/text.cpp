@@ -91,6 +91,11 @@ std::string_view without_byte_order_mark(std::string_view text) {
   return text;
 }
 
+std::string shortened(std::string_view text) {
+  constexpr std::size_t kMost = 100;
+  return std::string(text.substr(0, kMost)) + (text.size() > kMost ? "..." : "");
+}
+
 bool is_plain_text(std::string_view text) {
   while (!text.empty()) {
     const std::size_t count = bytes_of_character(text);

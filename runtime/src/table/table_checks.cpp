@@ -17,8 +17,12 @@ NdArray* find(TableParts& parts, const std::string& name) {
 }
 
 std::string inventory(const TableParts& parts) {
+  constexpr std::size_t kMost = 10;
+  const std::size_t count = parts.arrays.size();
   std::string list;
-  for (const auto& array : parts.arrays) list += (list.empty() ? "" : ", ") + array.name();
+  for (std::size_t k = 0; k < std::min(count, kMost); ++k)
+    list += (list.empty() ? "" : ", ") + parts.arrays[k].name();
+  if (count > kMost) list += " and " + std::to_string(count - kMost) + " more";
   return list.empty() ? "no array" : list;
 }
 

@@ -68,18 +68,12 @@ void for_each_word(std::string_view text, Visit visit) {
   }
 }
 
-// A word as messages show it.
-std::string quoted(std::string_view word) {
-  constexpr std::size_t kMost = 40;
-  return std::string(word.substr(0, kMost)) + (word.size() > kMost ? "..." : "");
-}
-
 std::vector<double> parse_numbers(const Attributes& attributes, const std::string& key) {
   std::vector<double> numbers;
   for_each_word(require(attributes, key), [&](std::string_view text) {
     double value = 0;
     if (!parse_number(text, value) || !std::isfinite(value))
-      throw Error("attribute '" + key + "' holds '" + quoted(text) + "', which is no finite number");
+      throw Error("attribute '" + key + "' holds '" + shortened(text) + "', which is no finite number");
     numbers.push_back(value);
   });
   return numbers;
@@ -179,7 +173,7 @@ FrameKind read_frame(const Attributes& attributes) {
   const std::string& name = require(attributes, "rest_frame");
   for (const auto frame : {FrameKind::closed, FrameKind::none})
     if (name == name_of(frame)) return frame;
-  throw Error("attribute 'rest_frame' is '" + name + "'; allowed: closed, none");
+  throw Error("attribute 'rest_frame' is '" + shortened(name) + "'; allowed: closed, none");
 }
 
 void read_dense(TableParts& parts, Table& table) {
@@ -196,7 +190,7 @@ void read_spectrum(TableParts& parts, Table& table) {
   const Attributes& attributes = parts.attributes;
   const std::string& spectrum = require(attributes, "spectrum");
   if (spectrum != "rgb3" && spectrum != "full")
-    throw Error("attribute 'spectrum' is '" + spectrum + "'; allowed: rgb3, full");
+    throw Error("attribute 'spectrum' is '" + shortened(spectrum) + "'; allowed: rgb3, full");
   if (spectrum == "rgb3") return;
   for (const char* key : {"color_space", "illuminant", "wavelengths"})
     table.info[key] = require(attributes, key);
@@ -216,7 +210,7 @@ int read_schema_version(const TableParts& parts) {
   const std::string& text = require(parts.attributes, "schema_version");
   for (int version = kOldestTableSchemaVersion; version <= kTableSchemaVersion; ++version)
     if (text == std::to_string(version)) return version;
-  throw Error("schema version is '" + text + "'; this reader knows " +
+  throw Error("schema version is '" + shortened(text) + "'; this reader knows " +
               std::to_string(kOldestTableSchemaVersion) + " to " + std::to_string(kTableSchemaVersion));
 }
 
@@ -237,7 +231,8 @@ void check_texts(const Attributes& attributes) {
   for (const char* key : {"seed", "samples"}) {
     std::uint64_t number = 0;
     if (const std::string& text = require(attributes, key); !parse_whole_number(text, number))
-      throw Error("attribute '" + std::string(key) + "' is '" + quoted(text) + "'; allowed: a whole number");
+      throw Error("attribute '" + std::string(key) + "' is '" + shortened(text) +
+                  "'; allowed: a whole number");
   }
   if (attributes.count("noise")) {
     const std::vector<double> noise = parse_numbers(attributes, "noise");
@@ -257,7 +252,7 @@ Table build(TableParts& parts) {
   if (const auto defect = table.material.defect()) throw Error(defect->message());
   const std::string& symmetry = require(parts.attributes, "symmetry");
   if (symmetry != "isotropic" && symmetry != "anisotropic")
-    throw Error("symmetry is '" + symmetry + "'; allowed: isotropic, anisotropic");
+    throw Error("symmetry is '" + shortened(symmetry) + "'; allowed: isotropic, anisotropic");
   table.symmetry = symmetry == "isotropic" ? Symmetry::isotropic : Symmetry::anisotropic;
   check_symmetry(table);
   const std::string& encoding = require(parts.attributes, "encoding");
@@ -266,7 +261,7 @@ Table build(TableParts& parts) {
   else if (encoding == "dense")
     read_dense(parts, table);
   else
-    throw Error("encoding is '" + encoding + "'; allowed: dense, factored");
+    throw Error("encoding is '" + shortened(encoding) + "'; allowed: dense, factored");
   check_ranges(table);
   check_below_exterior(table, version);
   if (!is_hash_of_content(require(parts.attributes, "content_hash"), hash))
@@ -306,13 +301,16 @@ std::vector<Axis> parse_axes(const Attributes& attributes, const std::string& ar
     Axis axis;
     axis.name = require(attributes, prefix + "name");
     axis.unit = require(attributes, prefix + "unit");
-    if (!is_plain_text(axis.name) || !is_plain_text(axis.unit))
-      throw Error("array '" + array_name + "': axis '" + axis.name +
-                  "' has a name or unit that is not UTF-8, or holds a control character");
+    constexpr std::size_t kLongest = 100;
+    for (const std::string* text : {&axis.name, &axis.unit})
+      if (!is_plain_text(*text) || text->size() > kLongest)
+        throw Error("array '" + array_name + "': axis '" + shortened(axis.name) +
+                    "' has a name or unit that is not UTF-8, holds a control character or is longer than " +
+                    std::to_string(kLongest) + " bytes");
     const auto number = [&](std::string_view text) {
       double value = 0;
       if (!parse_number(text, value))
-        throw Error("array '" + array_name + "': axis '" + axis.name + "' holds '" + quoted(text) +
+        throw Error("array '" + array_name + "': axis '" + axis.name + "' holds '" + shortened(text) +
                     "', which is no number");
       return value;
     };
@@ -322,8 +320,8 @@ std::vector<Axis> parse_axes(const Attributes& attributes, const std::string& ar
     if (attributes.count(prefix + "softness")) axis.softness = number(attributes.at(prefix + "softness"));
     const std::string& interpolation = require(attributes, prefix + "interpolation");
     if (interpolation != "linear" && interpolation != "cubic")
-      throw Error("array '" + array_name + "': axis '" + axis.name + "' has interpolation '" + interpolation +
-                  "'; allowed: linear, cubic");
+      throw Error("array '" + array_name + "': axis '" + axis.name + "' has interpolation '" +
+                  shortened(interpolation) + "'; allowed: linear, cubic");
     axis.is_cubic = interpolation == "cubic";
     for_each_word(require(attributes, prefix + "nodes"),
                   [&](std::string_view node) { axis.nodes.push_back(number(node)); });

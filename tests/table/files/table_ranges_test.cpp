@@ -150,6 +150,21 @@ TEST(TableRanges, AxesOfArrays) {
                  {"axis 'film_thickness_nm' leaves 0 to 1e+05"});
 }
 
+// What a message quotes or lists is short, whatever the file holds.
+TEST(TableRanges, MessagesAreShort) {
+  const std::string endless(1000000, 'x');
+  const test::Form form = test::forms().front();
+  const auto expect_short = [&](const Change& change) {
+    Table table = factored(AbsorptionPath::sum);
+    change(table);
+    EXPECT_LT(refusal(form, form.bytes(table), kName).size(), 1000u);
+  };
+  for (const char* key : {"encoding", "spectrum", "seed", "noise"})
+    expect_short([&](Table& t) { t.info[key] = endless; });
+  expect_short([&](Table& t) { t.factors.grid[0].name = endless; });
+  expect_short([&](Table& t) { t.factors.grid[0].unit = endless; });
+}
+
 TEST(TableRanges, AxisOfFirstVisit) {
   for (const double end : {2000.0, 1e300})
     expect_refused(test::small_full_table(),

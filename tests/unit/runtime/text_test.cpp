@@ -99,6 +99,11 @@ TEST(Text, WholeNumbersAreDigitsAlone) {
     EXPECT_FALSE(parse_whole_number(text, value)) << text;
 }
 
+TEST(Text, ShortenedIsTheBeginning) {
+  EXPECT_EQ(shortened(std::string(100, 'a')), std::string(100, 'a'));
+  EXPECT_EQ(shortened(std::string(101, 'a')), std::string(100, 'a') + "...");
+}
+
 TEST(Text, PlainTextIsUtf8WithoutControlCharacters) {
   for (const char* text : {"", "a b\tc\n", "\u00e4\u20ac\U0001f40d\u00a0", "\uffff"})
     EXPECT_TRUE(is_plain_text(text)) << text;

@@ -30,6 +30,9 @@ std::string_view without_byte_order_mark(std::string_view text);
 // says. Bytes of UTF-8 stay as they are, except the control characters U+0080 to U+009F.
 std::string printable(std::string_view text);
 
+// Returns the beginning of a text that a message quotes: a file may hold one of megabytes.
+std::string shortened(std::string_view text);
+
 // Returns whether a text is UTF-8 without control characters other than line feeds and tabs.
 bool is_plain_text(std::string_view text);
 

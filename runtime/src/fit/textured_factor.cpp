@@ -118,7 +118,7 @@ Color4 TexturedFactor::node(const Folded& b, const Rgb& norm, int c, const Float
     const double decay = waves_.least_decay(c) - this->decay(channel, c);
     double albedo = std::max({b.arriving[channel], kLeastShare * mean(b.arriving), kLeastValue});
     if (grid_.is_warped)
-      albedo += waves_.field().frame().floor() * std::max(b.all[channel], kLeastShare * mean(b.all)) *
+      albedo += waves_.field().frame().floor() * std::max({b.all[channel], kLeastShare * mean(b.all), 0.0}) *
                 std::exp(std::min(decay, -kLeastLog));
     const double value = std::log(albedo / scale / b.passing[channel]) - decay;
     result[channel] = static_cast<float>(std::clamp(value, kLeastLog, kMostLog));

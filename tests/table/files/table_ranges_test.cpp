@@ -235,6 +235,32 @@ TEST(TableRanges, LookUpsAreFiniteAtTheirEnds) {
       }
 }
 
+// A rough film's table whose base IORs reach below the exterior's.
+Table below_exterior() {
+  Table table = factored(AbsorptionPath::sum);
+  table.material.exterior_ior = 1.45;
+  const auto moved = [](const NdArray& array) {
+    auto axes = array.axes();
+    axes[0].nodes = {1.4, 1.45, 1.5};
+    axes[0].origin = 1.45;
+    for (Axis& axis : axes)
+      if (axis.name == "cos_theta") axis = test::cubic_axis("warped_cos", {0, 0.5, 1});
+    return NdArray(array.name(), axes, array.precision(), 1);
+  };
+  table.factors.grid[1].nodes = {1.4, 1.45, 1.5};
+  table.factors.grid[1].origin = 1.45;
+  for (NdArray* array : {&table.factors.arrival, &table.factors.returned}) *array = moved(*array);
+  return table;
+}
+
+// The base reflects only where weights are negative in every channel.
+TEST(TableRanges, LookUpsOfNegativeLightAreFinite) {
+  Table table = below_exterior();
+  table.factors.wavelengths.albedo = {1, 0, 0, 0, 0};
+  table.factors.wavelengths.weight = {Rgb(-2), Rgb(2), Rgb(1), Rgb(0), Rgb(0)};
+  expect_finite(table);
+}
+
 TEST(TableRanges, LookUpsOfADenseTableAreFiniteAtTheirEnds) {
   for (Table table : {dense(), small_table(Precision::single_float, false), test::small_full_table(),
                       test::small_anisotropic_table(Precision::single_float)}) {

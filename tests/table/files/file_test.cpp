@@ -141,7 +141,9 @@ TEST(File, ReplacedFileKeepsItsOwner) {
   const ScratchFolder folder;
   const std::string path = folder.file("f");
   write_file_atomically(path, "old");
-  if (::geteuid() == 0) ASSERT_EQ(::chown(path.c_str(), 65534, 65534), 0);
+  if (::geteuid() == 0) {
+    ASSERT_EQ(::chown(path.c_str(), 65534, 65534), 0);
+  }
   struct stat before {};
   struct stat after {};
   ASSERT_EQ(::stat(path.c_str(), &before), 0);

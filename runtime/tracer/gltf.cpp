@@ -177,8 +177,6 @@ class GltfReader {
     const std::size_t step = mode == kTriangles ? 3 : 1;
     require_mesh_memory(path_, mesh_.positions.size(), mesh_.triangles.size() + corners.size() / step,
                         document_.file_bytes());
-    if (mode == kTriangles && corners.size() % 3 != 0)
-      throw Error(fmt::format("found triangles of {} corners; allowed: a multiple of 3", corners.size()));
     const auto vertex = [&](std::uint32_t i) { return static_cast<std::uint32_t>(first + i); };
     for (std::size_t i = 0; i + 2 < corners.size(); i += step) {
       const bool is_odd = mode == kStrip && i % 2 == 1;

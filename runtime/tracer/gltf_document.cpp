@@ -133,8 +133,9 @@ std::size_t components_of(const std::string& type) {
 
 // Extensions that change no geometry, or that numbers of any type take care of.
 bool is_harmless(const std::string& extension) {
-  static constexpr std::array<std::string_view, 6> kFamilies = {
-      "KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "EXT_lights_", "KHR_xmp"};
+  static constexpr std::array<std::string_view, 7> kFamilies = {
+      "KHR_technique", "KHR_materials_", "KHR_texture_", "EXT_texture_",
+      "KHR_lights_",   "EXT_lights_",    "KHR_xmp"};
   static constexpr std::array<std::string_view, 3> kOthers = {"KHR_mesh_quantization", "MSFT_texture_dds",
                                                               "KHR_animation_pointer"};
   return std::any_of(kFamilies.begin(), kFamilies.end(),

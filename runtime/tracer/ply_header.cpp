@@ -134,12 +134,7 @@ PlyHeader read_ply_header(std::string_view bytes) {
     } else if (keyword == "property") {
       if (header.elements.empty()) throw Error("found a property before any element");
       header.elements.back().properties.push_back(property_of(words));
-    } else if (keyword != "" && keyword != "comment" && keyword != "obj_info") {
-      throw Error(
-          fmt::format("found '{}' in the header; allowed: format, element, property, comment, "
-                      "obj_info, end_header",
-                      excerpt(keyword)));
-    }
+    }  // all else is a comment, which not every exporter marks
   }
   if (!has_format) throw Error("the header has no format");
   header.size = all.size() - bytes.size();

@@ -259,6 +259,9 @@ TEST(TableRanges, LookUpsOfNegativeLightAreFinite) {
   table.factors.wavelengths.albedo = {1, 0, 0, 0, 0};
   table.factors.wavelengths.weight = {Rgb(-2), Rgb(2), Rgb(1), Rgb(0), Rgb(0)};
   expect_finite(table);
+  const Vec3 wo = normalize(Vec3{0.3, 0, 1}), wi = normalize(Vec3{-0.2, 0.4, 1});
+  const Rgb f = TexturedTable(table).at({250, 1.43, 0.1}).eval_pdf(wo, wi).f;
+  for (int c = 0; c < 3; ++c) EXPECT_LT(std::abs(f[c]), 10) << c;
 }
 
 TEST(TableRanges, LookUpsOfADenseTableAreFiniteAtTheirEnds) {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <numbers>
 
 #include "sunbeam/core/rng.h"
@@ -188,9 +188,9 @@ TEST(Polygon, AHundredThousandCornersTakeNoTime) {
   }
   comb.push_back({kCorners, -1, 0});
   comb.push_back({-1, -1, 0});
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // of this process, however busy the machine is
   for (const Polygon& polygon : {star, comb, spiral, waves}) expect_covered(polygon, "large");
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  EXPECT_LT(std::clock() - start, 20 * CLOCKS_PER_SEC);
 }
 
 }  // namespace

@@ -224,8 +224,9 @@ TEST(TableRanges, LookUpsAreFiniteAtTheirEnds) {
   for (const Roughness& roughness : {Roughness(0), Roughness(0.3), Roughness(0.3, 0.1)})
     for (const AbsorptionPath path : {AbsorptionPath::sum, AbsorptionPath::product})
       for (const double ior : {1.0, 1.45}) {
+        if (roughness.u > 0 && ior > 1) continue;  // a rough film's table has other axes there
         Table table = factored(path, roughness);
-        table.material.exterior_ior = roughness.u == 0 ? ior : 1;
+        table.material.exterior_ior = ior;
         if (!table.factors.arrival.empty()) fill_with_ends(table.factors.arrival, -100, 1e6);
         if (!table.factors.exchange.empty()) fill_with_ends(table.factors.exchange, -1e30, 1e30);
         if (!table.factors.returned.empty()) fill_with_ends(table.factors.returned, 0, 1);

@@ -127,8 +127,8 @@ Rendering read_noted(const std::string& path) {
 }  // namespace
 
 int run_compare(const CompareOptions& options) {
-  require_separate({options.test, options.reference}, {options.png});
   check_options(options);
+  require_separate({options.test, options.reference}, {options.png});
   const Rendering a = read_noted(options.test), b = read_noted(options.reference);
   const ExrImage &test = a.picture, &reference = b.picture;
   Comparison comparison;

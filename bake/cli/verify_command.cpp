@@ -62,10 +62,9 @@ std::string command_of(const VerifyOptions& options) {
                      options.points, options.seed, truth, shell_word(options.html));
 }
 
-void check_html(const std::string& path) {
-  if (extension(path) != ".html")
+void require_html_extension(const std::string& path) {
+  if (!path.empty() && extension(path) != ".html")
     throw Error(fmt::format("{}: extension is '{}'; allowed for --html: .html", path, extension(path)));
-  require_writable(path);
 }
 
 void write_html(const VerifyOptions& options, const Table& table, const Recipe& recipe,
@@ -90,11 +89,12 @@ Estimator truth_of(const VerifyOptions& options, const Recipe& recipe) {
 }  // namespace
 
 int run_verify(const VerifyOptions& options) {
+  require_html_extension(options.html);
   require_separate({options.table}, {options.json, options.html});
   const Table table = load_table(options.table);
   const Recipe recipe = parse_stored_recipe(table.info.at("recipe"), options.table + ": recipe");
-  if (!options.json.empty()) require_writable(options.json);
-  if (!options.html.empty()) check_html(options.html);
+  for (const std::string& path : {options.json, options.html})
+    if (!path.empty()) require_writable(path);
   VerifySettings settings = verify_settings_of(recipe);
   settings.points = options.points;
   settings.seed = options.seed;

@@ -146,7 +146,7 @@ class Report(support.CliTest):
     def test_refusals(self):
         (self.folder / "folder.html").mkdir()
         for path, needle in (("missing/report.html", "cannot write"), ("folder.html", "folder"),
-                             ("report.pdf", ".html"), ("quick.exr", "an input of this command")):
+                             ("report.pdf", ".html"), ("quick.exr", ".html")):
             with self.subTest(path=path):
                 self.refuse("verify", "quick.exr", "--points", "1", "--html", path, naming=[path, needle])
 

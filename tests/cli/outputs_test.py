@@ -290,10 +290,17 @@ class Killed(OutputsTest):
     def temporaries(self):
         return [n for n in self.names() if n.startswith(".big.ply.") and n.endswith(TEMPORARY)]
 
+    def size_of(self, name):
+        """0 if it went in the meantime, as the probe before the work does."""
+        try:
+            return (self.folder / name).stat().st_size
+        except FileNotFoundError:
+            return 0
+
     def end_while_writing(self, number):
         process = subprocess.Popen([support.BINARY, *self.COMMAND], cwd=self.folder, stderr=subprocess.DEVNULL)
         deadline = time.monotonic() + support.TIME_LIMIT_S
-        while not any((self.folder / n).stat().st_size > 0 for n in self.temporaries() if (self.folder / n).exists()):
+        while not any(self.size_of(name) > 0 for name in self.temporaries()):
             self.assertTrue(process.poll() is None and time.monotonic() < deadline, "no temporary was seen")
         process.send_signal(number)
         self.assertEqual(process.wait(timeout=support.TIME_LIMIT_S), -number)

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "bake/check/csv.h"
+#include "bake/check/film_points.h"
 #include "bake/check/point_columns.h"
 #include "bake/check/walked_mean.h"
 #include "bake/live/exact/exact.h"
@@ -216,6 +217,10 @@ class TableRows {
 PointsReport evaluate_points_live(const Material& material, const Spectrum& spectrum, const Csv& csv,
                                   const PointsSettings& settings, std::ostream& out) {
   const PointColumns reader(csv, settings.quantity);
+  if (holds_film_points(csv, settings.quantity)) {
+    evaluate_film_points(material, csv, out);
+    return {{}, reader.unused()};
+  }
   const LiveRows rows(material, spectrum, csv, reader);
   std::set<std::string> used;
   for (std::size_t k = 0; k < csv.rows.size(); ++k) {
@@ -235,6 +240,8 @@ PointsReport evaluate_points_live(const Material& material, const Spectrum& spec
 PointsReport evaluate_points_table(const Table& table, const Csv& csv, const PointsSettings& settings,
                                    std::ostream& out) {
   const PointColumns reader(csv, settings.quantity);
+  if (holds_film_points(csv, settings.quantity))
+    throw Error(csv.name + ": column 'layers' is evaluated by a recipe, not by a table");
   for (const std::size_t k : reader.material_columns())
     if (std::find(kParameterNames.begin(), kParameterNames.end(), csv.header[k]) == kParameterNames.end())
       throw Error(fmt::format("{}: column '{}' is fixed in a table; a table's row may set {}", csv.name,

@@ -36,7 +36,8 @@ struct Key {
 };
 
 std::vector<Key> known_keys() {
-  std::vector<std::string> names = {"theta_i_deg", "theta_o_deg", "phi_deg", "phi_i_deg", "wavelength_nm"};
+  std::vector<std::string> names = {"theta_i_deg",   "theta_o_deg", "phi_deg",        "phi_i_deg",
+                                    "wavelength_nm", "layers",      "base_extinction"};
   names.insert(names.end(), material_keys().begin(), material_keys().end());
   std::vector<Key> keys;
   for (const auto& name : names) keys.push_back({name, core_of(name)});

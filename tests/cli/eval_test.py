@@ -264,6 +264,57 @@ class Live(EvalTest):
         self.assertEqual(process.stderr, b"sunbeam: error: standard output: cannot write\n")
 
 
+class Stacks(EvalTest):
+    """--quantity film with a column `layers`."""
+
+    def film(self, points, *options):
+        return support.rows_of(self.evaluate("tiny.toml", points, "--quantity", "film", *options).out)
+
+    def test_reference_table(self):
+        path = support.SOURCE_DIR / "tests/support/reference/layered_films.csv"
+        reference = support.rows_of("".join(l for l in path.read_text().splitlines(keepends=True) if l[0] != "#"))
+        inputs = list(reference[0])[:6]
+        points = "\n".join([",".join(inputs)] + [",".join(row[key] for key in inputs) for row in reference]) + "\n"
+        rows = self.film(points)
+        self.assertEqual(len(rows), len(reference))
+        for row, expected in zip(rows, reference):
+            self.assertEqual(list(row), list(expected))
+            self.assertAlmostEqual(float(row["reflectance"]), float(expected["reflectance"]), delta=1e-9)
+            self.assertAlmostEqual(float(row["transmittance"]) / float(expected["transmittance"]), 1, delta=1e-9)
+            self.assertEqual(row["reflectance_below"] == "", expected["reflectance_below"] == "")
+            if row["reflectance_below"]:
+                self.assertAlmostEqual(float(row["reflectance_below"]), float(expected["reflectance_below"]), delta=1e-9)
+
+    def test_one_layer_is_the_film_of_the_recipe(self):
+        """The same number of another formula; what is absent is the recipe's."""
+        film = self.film("film_thickness_nm,film_ior,wavelength_nm,theta_i_deg\n300,1.6,510,40\n")[0]
+        for layers in ("300/1.6/0", "100/1.6/0;200/1.6/0", " 300/1.6/0"):
+            stack = self.film(f"layers,wavelength_nm,theta_i_deg\n{layers},510,40\n")[0]
+            self.assertAlmostEqual(float(stack["reflectance"]), float(film["reflectance"]), delta=1e-12)
+            self.assertAlmostEqual(float(stack["reflectance"]) + float(stack["transmittance"]), 1, delta=1e-12)
+
+    def test_a_bare_base(self):
+        row = self.film("layers,exterior_ior,base_ior,wavelength_nm,theta_i_deg\n,1,1.5,510,0\n")[0]
+        self.assertAlmostEqual(float(row["reflectance"]), 0.04, delta=1e-12)
+
+    def test_refusals(self):
+        header = "layers,base_ior,base_extinction,wavelength_nm,theta_i_deg"
+        for row, needles in (("300/1.6,1.5,0,510,0", ["'layers'", "found '300/1.6'"]), ("300/1.6/0;,1.5,0,510,0", ["found ''"]),
+                             ("300/1.6/nan,1.5,0,510,0", ["300/1.6/nan"]), ("-1/1.6/0,1.5,0,510,0", ["-1/1.6/0"]),
+                             ("1/0.04/0,1.5,0,510,0", ["1/0.04/0"]), ("1/1.6/-1,1.5,0,510,0", ["1/1.6/-1"]),
+                             ("1/1/0,0.04,0,510,0", ["'base_ior'", "0.05"]), ("1/1/0,1.5,-1,510,0", ["'base_extinction'"]),
+                             ("1/1/0,1.5,0,510,90", ["'theta_i_deg'"]), ("1/1/0,1.5,0,inf,0", ["'wavelength_nm'"])):
+            self.refuse("eval", "tiny.toml", "--points", "-", "--quantity", "film", stdin=f"{header}\n{row}\n",
+                        naming=["standard input:2: ", "allowed", *needles])
+        for columns, needles in (("layers,theta_i_deg", ["'wavelength_nm' is missing"]),
+                                 ("layers,film_ior,wavelength_nm,theta_i_deg", ["'film_ior'", "beside 'layers'"]),
+                                 ("layers,transmittance,wavelength_nm,theta_i_deg", ["'transmittance'", "output"]),
+                                 ("base_extinction,theta_i_deg", ["'base_extinction'", "without 'layers'"])):
+            self.refuse("eval", "tiny.toml", "--points", "-", "--quantity", "film", stdin=columns + "\n", naming=needles)
+        self.refuse("eval", "tiny.toml", "--points", "-", stdin=f"{header},theta_o_deg,phi_deg\n",
+                    naming=["'layers'", "--quantity film"])
+
+
 class LiveRefusals(EvalTest):
     def refuse_points(self, text, *needles, options=()):
         self.write("points.csv", text)

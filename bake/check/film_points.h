@@ -1,0 +1,21 @@
+// This file evaluates stacks of layers at the rows of a CSV file: --quantity film with a column `layers`.
+#pragma once
+
+#include <iosfwd>
+
+#include "bake/check/point_columns.h"
+#include "sunbeam/material.h"
+
+namespace sunbeam {
+
+// Says whether the CSV is one of stacks. Throws Error if it has columns of stacks and cannot be one.
+bool holds_film_points(const Csv& csv, Quantity quantity);
+
+// Columns: `layers`, thickness_nm/ior/extinction of every layer from top to bottom, separated by ';';
+// theta_i_deg, wavelength_nm; exterior_ior and base_ior, `material`'s if absent; base_extinction, 0 if
+// absent. Writes the rows with the powers reflectance, transmittance and reflectance_below: the last along
+// the direction that light takes in the base, empty if the base absorbs or there is none. Throws Error before
+// anything is written if a row is bad.
+void evaluate_film_points(const Material& material, const Csv& csv, std::ostream& out);
+
+}  // namespace sunbeam

@@ -56,12 +56,26 @@ std::string describe(const toml::node& node) {
                              : "a date or time";
 }
 
-// An element of a list of pairs.
-std::string describe_pair(const toml::node& node) {
-  const toml::array* pair = node.as_array();
-  if (!pair) return describe(node);
-  if (pair->size() != 2) return fmt::format("a list of {}", pair->size());
-  return fmt::format("[{}, {}]", describe((*pair)[0]), describe((*pair)[1]));
+// An element of a list of lists, each of `shortest` to `longest` numbers.
+std::string describe_row(const toml::node& node, std::size_t shortest, std::size_t longest) {
+  const toml::array* row = node.as_array();
+  if (!row) return describe(node);
+  if (row->size() < shortest || row->size() > longest) return fmt::format("a list of {}", row->size());
+  std::vector<std::string> parts;
+  for (const auto& part : *row) parts.push_back(describe(part));
+  return fmt::format("[{}]", fmt::join(parts, ", "));
+}
+
+// The finite numbers of a list; none if it is no list or has anything else in it.
+std::vector<double> finite_numbers(const toml::node& node) {
+  const toml::array* row = node.as_array();
+  std::vector<double> result;
+  for (std::size_t k = 0; row && k < row->size(); ++k) {
+    const auto value = (*row)[k].is_number() ? (*row)[k].value<double>() : std::nullopt;
+    if (!value || !std::isfinite(*value)) return {};
+    result.push_back(*value);
+  }
+  return result;
 }
 
 std::string range_text(const Range& allowed) { return fmt::format("{} to {}", allowed.low, allowed.high); }
@@ -169,9 +183,15 @@ void ConfigTable::fail(std::string_view key, const std::string& message) const {
   throw Error(fmt::format("{}: key '{}': {}", where, node_->full_key(key), message));
 }
 
+void ConfigTable::refuse(std::string_view key, const std::string& allowed) const {
+  const toml::node* node = node_->ask(key);
+  fail(key, (node ? "found " + describe(*node) : "is missing") + "; allowed: " + allowed);
+}
+
 bool ConfigTable::has(std::string_view key) const { return node_->ask(key) != nullptr; }
 bool ConfigTable::has_removed(std::string_view key) const { return node_->values->contains(key) && has(key); }
 bool ConfigTable::is_number(std::string_view key) const { return has(key) && node_->ask(key)->is_number(); }
+bool ConfigTable::is_string(std::string_view key) const { return has(key) && node_->ask(key)->is_string(); }
 bool ConfigTable::is_list(std::string_view key) const { return has(key) && node_->ask(key)->is_array(); }
 bool ConfigTable::is_table(std::string_view key) const { return has(key) && node_->ask(key)->is_table(); }
 
@@ -261,11 +281,27 @@ std::vector<std::pair<double, double>> ConfigTable::curve(std::string_view key, 
     const auto x = is_pair ? number_of(*pair, 0, allowed_x) : std::nullopt;
     const auto y = is_pair ? number_of(*pair, 1, allowed_y) : std::nullopt;
     if (!x || !y || (!result.empty() && *x <= result.back().first)) {
-      fail(key, fmt::format("element {} is {}; {}", result.size() + 1, describe_pair(element), allowed));
+      fail(key, fmt::format("element {} is {}; {}", result.size() + 1, describe_row(element, 2, 2), allowed));
     }
     result.emplace_back(*x, *y);
   }
   if (result.size() < 2) fail(key, fmt::format("found {} pairs; {}", result.size(), allowed));
+  return result;
+}
+
+std::vector<std::vector<double>> ConfigTable::rows(std::string_view key, std::size_t shortest,
+                                                   std::size_t longest) const {
+  const std::string allowed = fmt::format("a list of lists of {} to {} numbers", shortest, longest);
+  const toml::node* node = node_->ask(key);
+  if (!node || !node->is_array()) refuse(key, allowed);
+  std::vector<std::vector<double>> result;
+  for (const auto& element : *node->as_array()) {
+    auto row = finite_numbers(element);
+    if (row.size() < shortest || row.size() > longest)
+      fail(key, fmt::format("element {} is {}; allowed: {}", result.size() + 1,
+                            describe_row(element, shortest, longest), allowed));
+    result.push_back(std::move(row));
+  }
   return result;
 }
 

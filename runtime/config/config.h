@@ -34,6 +34,7 @@ class ConfigTable {
   // Does the same as has(), but the key counts as asked for only if it is there.
   bool has_removed(std::string_view key) const;
   bool is_number(std::string_view key) const;
+  bool is_string(std::string_view key) const;
   bool is_list(std::string_view key) const;
   bool is_table(std::string_view key) const;
   bool is_list_of_lists(std::string_view key) const;  // by its first element
@@ -51,6 +52,9 @@ class ConfigTable {
   // Returns a curve: a list of at least two [x, y] with ascending x.
   std::vector<std::pair<double, double>> curve(std::string_view key, const Range& allowed_x,
                                                const Range& allowed_y) const;
+  // Returns a list of lists, each of `shortest` to `longest` finite numbers.
+  std::vector<std::vector<double>> rows(std::string_view key, std::size_t shortest,
+                                        std::size_t longest) const;
   Vec3 vec3(std::string_view key, std::optional<Vec3> fallback = {}) const;
   // Reads one number (grey) or a list of three.
   Rgb rgb(std::string_view key, const Range& allowed, std::optional<Rgb> fallback = {}) const;
@@ -65,6 +69,8 @@ class ConfigTable {
 
   // Throws Error: "FILE:LINE: key 'a.b': MESSAGE".
   [[noreturn]] void fail(std::string_view key, const std::string& message) const;
+  // Does the same; the message says what was found at the key, or that it is missing, and what is allowed.
+  [[noreturn]] void refuse(std::string_view key, const std::string& allowed) const;
 
   const std::string& file() const;
   // Resolves a path that is relative to the folder of the file, links and ".." as the system does.

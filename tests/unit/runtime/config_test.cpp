@@ -50,6 +50,21 @@ TEST(Config, ReadsEveryType) {
   EXPECT_EQ(table.vec3("colour").y, 0.2);
 }
 
+TEST(Config, RowsAreListsOfNumbers) {
+  const auto table =
+      ConfigTable::parse("rows = [[1, 2], [3, 4.5, 6]]\nword = \"a\"\nnumber = 1", "skin.toml");
+  EXPECT_EQ(table.rows("rows", 2, 3), (std::vector<std::vector<double>>{{1, 2}, {3, 4.5, 6}}));
+  EXPECT_TRUE(table.is_string("word"));
+  EXPECT_FALSE(table.is_string("number"));
+  EXPECT_FALSE(table.is_string("absent"));
+  EXPECT_EQ(error_of([&] { table.rows("rows", 1, 2); }),
+            "skin.toml:1: key 'rows': element 2 is a list of 3; allowed: a list of lists of 1 to 2 numbers");
+  EXPECT_EQ(error_of([&] { table.rows("number", 2, 3); }),
+            "skin.toml:3: key 'number': found 1; allowed: a list of lists of 2 to 3 numbers");
+  EXPECT_THAT(error_of([&] { table.rows("absent", 2, 3); }),
+              HasSubstr("key 'absent': is missing; allowed: a list"));
+}
+
 TEST(Config, FallbacksServeMissingKeysOnly) {
   const ConfigTable table = film();
   EXPECT_EQ(table.number("absent", {0, 1}, 0.25), 0.25);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <ostream>
 
+#include "bake/optics/dispersion/optical_index.h"
 #include "bake/optics/film_stack.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/text.h"
@@ -14,7 +15,7 @@
 namespace sunbeam {
 namespace {
 
-constexpr double kThickest = 100000, kLeastIor = 0.05, kLargestIor = 10, kMostExtinction = 100;
+constexpr double kThickest = 100000;
 
 std::size_t require(const Csv& csv, const char* key) {
   if (const auto column = csv.column(key)) return *column;

@@ -4,6 +4,7 @@
 
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/factor_frame.h"
+#include "sunbeam/detail/table_ranges.h"
 
 namespace sunbeam {
 namespace {
@@ -95,6 +96,11 @@ ArrayShape returned_shape(const Recipe& recipe, const Wavelengths& w) {
 }
 
 ArrayShape exchange_shape(const Recipe& recipe, const Wavelengths& w) {
+  if (!has_factored_depths(recipe))
+    throw Error(
+        fmt::format("{}: key 'grid.absorption_per_nm': found an optical depth of {:.4g} with path product; "
+                    "allowed in a factored table: up to {}",
+                    recipe.name, depths_axis(recipe, w).high(), kDeepestProduct));
   const std::vector<Axis> axes{cubic(recipe.grid[1]), depths_axis(recipe, w), albedos_axis(w),
                                orders_axis(recipe, w, 1, exchange_nodes_per_fringe(w))};
   const auto with_wi = joined(axes, direction_axes(recipe, "_i"));
@@ -102,6 +108,11 @@ ArrayShape exchange_shape(const Recipe& recipe, const Wavelengths& w) {
 }
 
 }  // namespace
+
+bool has_factored_depths(const Recipe& recipe) {
+  return recipe.material.absorption_path == AbsorptionPath::sum ||
+         depths_axis(recipe, recipe.spectrum.wavelengths(recipe.material)).high() <= kDeepestProduct;
+}
 
 std::vector<Axis> direction_axes(const Recipe& recipe, const std::string& suffix) {
   const auto count = static_cast<std::size_t>(recipe.table.angles);

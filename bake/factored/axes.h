@@ -14,8 +14,11 @@ struct FactorShapes {
   ArrayShape arrival, returned, exchange;
 };
 
+// Says whether the recipe's optical depths are within what a factored table holds.
+bool has_factored_depths(const Recipe& recipe);
+
 // Returns the shapes of the recipe's factored table. Throws Error if it would be larger than a computer can
-// hold.
+// hold, or if its optical depths are too large.
 FactorShapes factor_shapes(const Recipe& recipe);
 
 // Returns the axes of a direction (cos_theta, phi) in an array of the recipe. `suffix` tells the two

@@ -41,6 +41,7 @@ std::vector<Encoding> encodings_of(const Recipe& recipe) {
   if (recipe.table.encoding != Encoding::automatic) return {recipe.table.encoding};
   if (!has_factors(recipe.material)) return {Encoding::dense};
   if (recipe.grid[1].size() > 1 && reaches_below(recipe)) return {Encoding::factored};
+  if (!has_factored_depths(recipe)) return {Encoding::dense};
   if (bytes_of(recipe, Encoding::factored) < bytes_of(recipe, Encoding::dense))
     return {Encoding::factored, Encoding::dense};
   return {Encoding::dense, Encoding::factored};

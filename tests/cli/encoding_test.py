@@ -55,6 +55,17 @@ class Encoding(support.CliTest):
                 stated = json.loads(self.succeed("info", "table.exr", "--json").out)["error"]["error_median"]
                 self.assertEqual(f"{float(stated):.3g}", errors[better])
 
+    def test_depths_that_factors_cannot_hold(self):
+        """One visit multiplies by up to the exponential of a depth of path product."""
+        deep = ("--set", "material.absorption_path=product", "--set", "grid.absorption_per_nm=[0, 25]",
+                "--set", "material.absorption_per_nm=1", "--set", "accuracy.tolerance_median=10", "--set", "accuracy.tolerance_p99=10")
+        self.refuse("bake", "tiny.toml", "-o", "deep.exr", *deep, "--set", "table.encoding=factored",
+                    naming=["tiny.toml: key 'grid.absorption_per_nm': found an optical depth of 50", "allowed", "40"])
+        self.assertFalse((self.folder / "deep.exr.work").exists())
+        result, encoding = self.bake(*deep)
+        self.assertEqual(encoding, "dense")
+        self.assertNotIn("factored", result.err)
+
     def test_what_is_asked_for_is_taken_without_a_word(self):
         for encoding in ("dense", "factored"):
             result, found = self.bake_and_miss("--set", f"table.encoding={encoding}")

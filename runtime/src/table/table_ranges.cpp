@@ -18,8 +18,6 @@ constexpr Interval kExchange{-1e30, 1e30};
 // Shares of light: plainly, with what sums of numbers lack of 1, or folded into colours.
 constexpr Interval kShare{-0.001, 1.01}, kFoldedShare{-1, 2};
 constexpr Interval kRemainder{-1e7, 1e7}, kStandardError{0, 1e7};
-// One visit of the base multiplies by up to exp(tau) there.
-constexpr double kDeepestProduct = 40;
 
 void require(const NdArray& array, const Interval& allowed) {
   const auto low = static_cast<float>(allowed.low), high = static_cast<float>(allowed.high);

@@ -7,6 +7,9 @@
 namespace sunbeam {
 inline namespace v1 {
 
+// The largest optical depth of path "product" in a factored table, which multiplies by up to its exponential.
+inline constexpr double kDeepestProduct = 40;
+
 // Throws Error naming the array, the value and the range if an array of `table` leaves its range, or if the
 // optical depths of path "product" do. What bakes write passes with room.
 void require_in_ranges(const Table& table);

@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "bake/base/version.h"
+#include "bake/blocks/journal.h"
 #include "bake/cli/commands.h"
 #include "bake/cli/console.h"
 #include "bake/cli/validators.h"
@@ -64,7 +65,7 @@ void add_max_memory(CLI::App* command) {
 
 // "K/N" with 1 <= K <= N.
 std::pair<int, int> shard_of_text(const std::string& text) {
-  constexpr int kMostShards = 100000;
+  constexpr int kMostShards = BakeIdentity::kMostShards;
   const auto numbers = split(text, '/');
   double shard = 0, shards = 0;
   if (numbers.size() != 2 || !parse_number(numbers[0], shard) || !parse_number(numbers[1], shards) ||

@@ -9,6 +9,7 @@
 
 #include "runtime/tracer/snake.h"
 #include "sunbeam/detail/file.h"
+#include "tests/render/mesh_support.h"
 #include "tests/render/support.h"
 
 namespace sunbeam {
@@ -58,17 +59,8 @@ std::string ply(const std::string& vertices, const std::string& faces, int verte
 }
 const std::string kCorners = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 
-std::string load_error(const std::string& name, const std::string& content) {
-  const ScratchFolder folder;
-  const std::string path = folder.write(name, content);
-  const std::string message = error_of([&] { load_mesh(path); });
-  EXPECT_TRUE(message.empty() || message.find(name) != std::string::npos) << message;
-  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-  return message;
-}
 void expect_error(const std::string& content, const std::string& part) {
-  const std::string message = load_error("m.ply", content);
-  EXPECT_NE(message.find(part), std::string::npos) << message;
+  expect_mesh_file_error("m.ply", content, part);
 }
 
 TEST(MeshFile, AsciiPlyPolygonsBecomeTriangles) {
@@ -100,7 +92,7 @@ TEST(MeshFile, ACutBinaryPlyIsRefusedAnywhere) {
   write_mesh(folder.file("whole.ply"), sphere_mesh(1, 8));
   const std::string bytes = read_file(folder.file("whole.ply"));
   for (std::size_t size = 0; size < bytes.size(); size += 1 + size / 37)
-    EXPECT_NE(load_error("m.ply", bytes.substr(0, size)), "") << size << " of " << bytes.size();
+    EXPECT_NE(mesh_file_error("m.ply", bytes.substr(0, size)), "") << size << " of " << bytes.size();
 }
 
 TEST(MeshFile, TrianglesWithoutAreaAreDroppedAndCounted) {
@@ -122,7 +114,8 @@ TEST(MeshFile, TrianglesWithoutAreaAreDroppedAndCounted) {
 }
 
 TEST(MeshFile, OtherExtensionsAreRefused) {
-  EXPECT_NE(load_error("m.stl", "").find("allowed for a mesh: .obj, .ply, .gltf, .glb"), std::string::npos);
+  EXPECT_NE(mesh_file_error("m.stl", "").find("allowed for a mesh: .obj, .ply, .gltf, .glb"),
+            std::string::npos);
   EXPECT_NE(error_of([] { write_mesh("m.glb", Mesh{}); }).find("allowed for writing a mesh: .obj, .ply"),
             std::string::npos);
   EXPECT_NE(error_of([] { load_mesh("missing.glb"); }).find("missing.glb: cannot read: No such file"),
@@ -195,18 +188,19 @@ TEST(MeshFile, GlbNodesAreTransformed) {
 }
 
 TEST(MeshFile, BadGlbIsRefused) {
-  EXPECT_EQ(load_error("m.glb", glb({})), "");
-  EXPECT_NE(load_error("m.glb", glb({.last_index = 7})).find("face index 7; allowed: 0 to 2"),
+  EXPECT_EQ(mesh_file_error("m.glb", glb({})), "");
+  EXPECT_NE(mesh_file_error("m.glb", glb({.last_index = 7})).find("face index 7; allowed: 0 to 2"),
             std::string::npos);
-  EXPECT_NE(load_error("m.glb", glb({.index_count = 300})).find("reaches beyond its buffer"),
+  EXPECT_NE(mesh_file_error("m.glb", glb({.index_count = 300})).find("reaches beyond its buffer"),
             std::string::npos);
-  EXPECT_NE(load_error("m.glb", glb({.first_x = std::numeric_limits<float>::quiet_NaN()})).find("not finite"),
-            std::string::npos);
-  EXPECT_NE(load_error("m.gltf", "{"), "");
-  EXPECT_NE(load_error("m.gltf", R"({"asset": {"version": "2.0"}})"), "");
+  EXPECT_NE(
+      mesh_file_error("m.glb", glb({.first_x = std::numeric_limits<float>::quiet_NaN()})).find("not finite"),
+      std::string::npos);
+  EXPECT_NE(mesh_file_error("m.gltf", "{"), "");
+  EXPECT_NE(mesh_file_error("m.gltf", R"({"asset": {"version": "2.0"}})"), "");
   const std::string whole = glb({});
   for (std::size_t size = 0; size < whole.size(); size += 61)
-    EXPECT_NE(load_error("m.glb", whole.substr(0, size)), "") << size << " of " << whole.size();
+    EXPECT_NE(mesh_file_error("m.glb", whole.substr(0, size)), "") << size << " of " << whole.size();
 }
 
 TEST(MeshFile, GltfWithItsBufferInsideOrBeside) {
@@ -233,7 +227,8 @@ TEST(MeshFile, GltfWithItsBufferInsideOrBeside) {
       EXPECT_LT(length(winding - Vec3{0, 0, 1}), 1e-6);  // mirrored or not, the same side is out
     }
   }
-  EXPECT_NE(load_error("m.gltf", text("missing.bin")).find("missing.bin: cannot read"), std::string::npos);
+  EXPECT_NE(mesh_file_error("m.gltf", text("missing.bin")).find("missing.bin: cannot read"),
+            std::string::npos);
 }
 
 // Flips bytes: what loads is sound, what does not says so in a line.

@@ -124,15 +124,6 @@ TEST(MeshFile, OtherExtensionsAreRefused) {
 
 // --- glTF ---
 
-template <class T>
-void put(std::string& bytes, std::initializer_list<T> values) {
-  for (const T value : values) {
-    char raw[sizeof(T)];
-    std::memcpy(raw, &value, sizeof(T));
-    bytes.append(raw, sizeof(T));
-  }
-}
-
 struct GlbParts {
   std::string node = R"("translation": [10, 0, 0], "scale": [2, 2, 2])";
   std::uint16_t last_index = 2;

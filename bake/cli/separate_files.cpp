@@ -62,10 +62,12 @@ void require_separate(const std::vector<std::string>& inputs, const std::vector<
       if (file.is_same(other)) throw Error(path + ": is the same file as another output, " + other.name);
     written.push_back(std::move(file));
   }
-  for (const std::string& path : inputs)
+  for (const std::string& path : inputs) {
+    const NamedFile read = input(path);
     for (const NamedFile& file : written)
-      if (file.is_same(input(path)))
+      if (file.is_same(read))
         throw Error(file.name + ": cannot write: it is an input of this command, " + path);
+  }
 }
 
 }  // namespace sunbeam

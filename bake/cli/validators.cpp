@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "sunbeam/detail/text.h"
 
 namespace sunbeam {
@@ -12,9 +10,7 @@ CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
   return CLI::Validator(
       [low, high](std::string& text) {
         std::uint64_t value = 0;
-        const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-        const bool parsed = result.ec == std::errc() && result.ptr == text.data() + text.size();
-        if (parsed && value >= low && value <= high) return std::string();
+        if (parse_whole_number(text, value) && value >= low && value <= high) return std::string();
         return fmt::format("found '{}'; allowed: a whole number, {} to {}", text, low, high);
       },
       "");

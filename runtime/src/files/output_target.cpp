@@ -8,11 +8,13 @@
 #endif
 
 #include <cerrno>
+#include <climits>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
 
 #include "sunbeam/core/error.h"
+#include "sunbeam/detail/text.h"
 
 namespace sunbeam {
 inline namespace v1 {
@@ -57,7 +59,9 @@ bool may_write(const std::string& path) {
 // Opening a descriptor's name anew would write at the start of a file, and cannot be done to a socket.
 int open_stream(const fs::path& path) {
   if (!is_descriptor(path)) return ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
-  return ::fcntl(std::stoi(path.filename().string()), F_DUPFD_CLOEXEC, 0);
+  std::uint64_t descriptor = 0;
+  const bool is_number = parse_whole_number(path.filename().string(), descriptor);
+  return ::fcntl(is_number && descriptor <= INT_MAX ? static_cast<int>(descriptor) : -1, F_DUPFD_CLOEXEC, 0);
 }
 
 #endif

@@ -11,6 +11,7 @@
 #include <type_traits>
 
 #include "runtime/tracer/gltf_uri.h"
+#include "runtime/tracer/mesh_file.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/read_limit.h"
 #include "sunbeam/detail/file.h"
@@ -115,13 +116,6 @@ void read_numbers(std::size_t type, const char* bytes, std::size_t stride, std::
     default:
       return read_as<float>(bytes, stride, per_entry, normalized, numbers);
   }
-}
-
-std::uint32_t checked_index(const char* name, double index, std::size_t count) {
-  if (!(index >= 0 && index < static_cast<double>(count) && index == std::floor(index)))
-    throw Error(
-        fmt::format("{} index {:g}; allowed: 0 to {}", name, index, static_cast<std::int64_t>(count) - 1));
-  return static_cast<std::uint32_t>(index);
 }
 
 std::size_t components_of(const std::string& type) {

@@ -32,6 +32,10 @@ void write_mesh(const std::string& path, const Mesh& mesh);
 // normals unit. Indices must be in range.
 LoadedMesh checked_mesh(const std::string& path, Mesh mesh);
 
+// Returns an index that a file gives as a number. Throws Error unless it is whole and below `count`; `name`
+// says of what it is an index.
+std::uint32_t checked_index(const char* name, double index, std::uint64_t count);
+
 // Throws Error unless indices of 32 bits can count the vertices, and a mesh of this size is within
 // read_limit() of a file of `file_bytes`. Importers ask before they make one.
 void require_mesh_memory(const std::string& path, std::uint64_t vertices, std::uint64_t triangles,

@@ -55,6 +55,13 @@ LoadedMesh checked_mesh(const std::string& path, Mesh mesh) {
   return {std::move(mesh), dropped};
 }
 
+std::uint32_t checked_index(const char* name, double index, std::uint64_t count) {
+  if (!(index >= 0 && index < static_cast<double>(count) && index == std::floor(index)))
+    throw Error(
+        fmt::format("{} index {:g}; allowed: 0 to {}", name, index, static_cast<std::int64_t>(count) - 1));
+  return static_cast<std::uint32_t>(index);
+}
+
 void require_mesh_memory(const std::string& path, std::uint64_t vertices, std::uint64_t triangles,
                          std::uint64_t file_bytes) {
   constexpr std::uint64_t kVertex = 2 * sizeof(Vec3) + sizeof(Point2), kTriangle = 3 * sizeof(std::uint32_t);

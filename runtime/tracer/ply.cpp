@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -73,12 +72,7 @@ class PlyReader {
   }
 
   // Indices of faces are held against the header, for vertices may come after faces.
-  std::uint32_t checked_index(double index) const {
-    if (!(index >= 0 && index < static_cast<double>(vertex_count_) && index == std::floor(index)))
-      throw Error(fmt::format("face index {:g}; allowed: 0 to {}", index,
-                              static_cast<std::int64_t>(vertex_count_) - 1));
-    return static_cast<std::uint32_t>(index);
-  }
+  std::uint32_t vertex_of(double index) const { return checked_index("face", index, vertex_count_); }
 
   static std::size_t indices_of(const PlyElement& element) {
     const auto place = element.list({"vertex_indices", "vertex_index"});
@@ -95,7 +89,7 @@ class PlyReader {
         numbers_, element,
         [&](std::size_t place, const Row& entries) {
           if (place == indices)
-            for (const double index : entries) corners_.push_back(checked_index(index));
+            for (const double index : entries) corners_.push_back(vertex_of(index));
           if (place != uvs) return;
           for (std::size_t k = 0; k + 1 < entries.size(); k += 2)
             corner_uvs_.push_back({entries[k], entries[k + 1]});
@@ -119,7 +113,7 @@ class PlyReader {
         numbers_, element,
         [&](std::size_t place, const Row& entries) {
           if (place != indices) return;
-          for (const double index : entries) strips_.push_back(index == -1 ? kRestart : checked_index(index));
+          for (const double index : entries) strips_.push_back(index == -1 ? kRestart : vertex_of(index));
           strips_.push_back(kRestart);
         },
         [](const Row&) {});

@@ -26,7 +26,7 @@ std::size_t require(const Csv& csv, const char* key) {
 void refuse_other_keys(const Csv& csv) {
   for (const auto& name : csv.header)
     for (const auto& key : material_keys())
-      if (name == key && key != "exterior_ior" && key != "base_ior")
+      if (name == key && key != "exterior_ior" && key != "base_ior" && key != "base_extinction")
         throw Error(
             fmt::format("{}: column '{}' stands beside 'layers'; allowed: exterior_ior, base_ior, "
                         "base_extinction, theta_i_deg, wavelength_nm",
@@ -107,8 +107,6 @@ constexpr std::array kResults = {"reflectance", "transmittance", "reflectance_be
 }  // namespace
 
 bool holds_film_points(const Csv& csv, Quantity quantity) {
-  if (csv.column("base_extinction") && !csv.column("layers"))
-    throw Error(csv.name + ": column 'base_extinction' stands without 'layers'");
   if (csv.column("layers") && quantity != Quantity::film)
     throw Error(csv.name + ": column 'layers' is evaluated by --quantity film alone");
   return csv.column("layers").has_value();

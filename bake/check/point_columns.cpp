@@ -36,8 +36,8 @@ struct Key {
 };
 
 std::vector<Key> known_keys() {
-  std::vector<std::string> names = {"theta_i_deg",   "theta_o_deg", "phi_deg",        "phi_i_deg",
-                                    "wavelength_nm", "layers",      "base_extinction"};
+  std::vector<std::string> names = {"theta_i_deg", "theta_o_deg",   "phi_deg",
+                                    "phi_i_deg",   "wavelength_nm", "layers"};
   names.insert(names.end(), material_keys().begin(), material_keys().end());
   std::vector<Key> keys;
   for (const auto& name : names) keys.push_back({name, core_of(name)});
@@ -100,6 +100,8 @@ PointColumns::PointColumns(const Csv& csv, Quantity quantity)
     refuse_if_almost_known(csv, name, keys);
     if (!name.empty()) unused_.push_back(name);
   }
+  const auto order = [&](std::size_t k) { return std::ranges::find(material_keys(), csv.header[k]); };
+  std::ranges::sort(material_columns_, {}, order);
   theta_i_ = require("theta_i_deg");
   if (quantity == Quantity::brdf) {
     theta_o_ = require("theta_o_deg");

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bake/optics/compiler.h"
+#include "bake/optics/quadrature.h"
 #include "sunbeam/core/vec.h"
 
 namespace sunbeam {
@@ -11,83 +13,249 @@ namespace {
 using Complex = std::complex<double>;
 constexpr Complex kI{0, 1};
 
-// The squared cosine in a medium of light that comes from `ior_from` at `cos_from`. The formula is arranged
-// so that equal media keep every digit at grazing.
-Complex cosine_squared(double ior_from, Complex index, double cos_from) {
-  return ((index - ior_from) * (index + ior_from) + square(ior_from * cos_from)) / (index * index);
+// Lanes are wavelengths, side by side. All functions of them are inlined, so that how processors pass them
+// does not matter.
+#pragma GCC diagnostic ignored "-Wpsabi"
+using Quad = double __attribute__((vector_size(32)));
+
+// Processors differ in the alignment that they give to such vectors.
+struct alignas(32) ComplexQuad {
+  Quad re, im;
+
+  void set(std::size_t lane, const Complex& value) {
+    re[lane] = value.real();
+    im[lane] = value.imag();
+  }
+};
+
+SUNBEAM_INLINE ComplexQuad sum(const ComplexQuad& a, const ComplexQuad& b) {
+  return {a.re + b.re, a.im + b.im};
+}
+SUNBEAM_INLINE ComplexQuad product(const ComplexQuad& a, const ComplexQuad& b) {
+  return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+}
+SUNBEAM_INLINE Quad squared_norm(const ComplexQuad& a) { return a.re * a.re + a.im * a.im; }
+
+// The squared cosine in a medium of light that comes from `ior_from` at `cosine`. The formula is arranged so
+// that equal media keep every digit at grazing.
+Complex cosine_squared(double ior_from, Complex index, double cosine) {
+  return ((index - ior_from) * (index + ior_from) + square(ior_from * cosine)) / (index * index);
 }
 
-// The root for which a wave that goes down decays.
-Complex downward_cosine(Complex index, Complex c_squared) {
+// The root for which a wave that goes away decays.
+Complex cosine_of(Complex index, Complex c_squared) {
   const Complex c = std::sqrt(c_squared);
   return (index * c).imag() < 0 ? -c : c;
 }
 
-// cos(delta) and sin(delta) / c, both times exp(i delta), so that thick layers do not overflow.
-struct LayerPhase {
-  Complex cosine, sine_over_c;
-  double damping;  // Im(delta)
+// What a layer does with the fields below it, times exp(i delta), so that thick layers do not overflow:
+// cos(delta), and -i sin(delta) times 1 / q and q, for both polarisations.
+struct LayerMatrix {
+  ComplexQuad cosine, s_per_q, s_q, p_per_q, p_q;
+  alignas(32) Quad damping;  // Im(delta)
 };
 
-LayerPhase layer_phase(const FilmLayer& layer, Complex c_squared, double wavelength_nm) {
-  const Complex c = downward_cosine(layer.index, c_squared);
-  const Complex k = 2 * kPi * layer.thickness_nm / wavelength_nm * layer.index, delta = k * c;
-  const Complex factor = std::exp(kI * delta);
+void set_lane(LayerMatrix& m, std::size_t lane, Complex index, double phase, double ior_from, double cosine) {
+  const Complex c_squared = cosine_squared(ior_from, index, cosine), c = cosine_of(index, c_squared);
+  const Complex k = phase * index, delta = k * c, factor = std::exp(kI * delta);
+  Complex cos_delta, sine_over_c;
   if (std::abs(delta) < 1e-3) {
     const Complex x = delta * delta;
-    return {std::cos(delta) * factor, k * (1.0 - x / 6.0 * (1.0 - x / 20.0)) * factor, delta.imag()};
+    cos_delta = std::cos(delta) * factor;
+    sine_over_c = k * (1.0 - x / 6.0 * (1.0 - x / 20.0)) * factor;
+  } else {
+    const Complex twice = factor * factor;
+    cos_delta = 0.5 * (1.0 + twice);
+    sine_over_c = (twice - 1.0) / (2.0 * kI * c);
   }
-  const Complex twice = factor * factor;
-  return {0.5 * (1.0 + twice), (twice - 1.0) / (2.0 * kI * c), delta.imag()};
+  const Complex sine = -kI * sine_over_c;
+  m.cosine.set(lane, cos_delta);
+  m.s_per_q.set(lane, sine / index);
+  m.s_q.set(lane, sine * index * c_squared);
+  m.p_per_q.set(lane, sine * index);
+  m.p_q.set(lane, sine / index * c_squared);
+  m.damping[lane] = delta.imag();
 }
 
 // The fields of both polarisations at one height. Those of p are (H, E), as their admittance is c / N.
 struct Fields {
-  Complex s_e, s_h, p_h, p_e;
+  ComplexQuad s_e, s_h, p_h, p_e;
+  alignas(32) Quad log_scale;  // of what they were divided by
 
-  // Goes up through a layer.
-  void pass(const LayerPhase& phase, Complex index, Complex c_squared) {
-    const Complex sine = -kI * phase.sine_over_c;
-    const Complex e = s_e, h = p_h;
-    s_e = phase.cosine * e + sine / index * s_h;
-    s_h = phase.cosine * s_h + sine * index * c_squared * e;
-    p_h = phase.cosine * h + sine * index * p_e;
-    p_e = phase.cosine * p_e + sine / index * c_squared * h;
+  SUNBEAM_INLINE void pass(const LayerMatrix& m) {
+    const ComplexQuad e = s_e, h = p_h;
+    s_e = sum(product(m.cosine, e), product(m.s_per_q, s_h));
+    s_h = sum(product(m.cosine, s_h), product(m.s_q, e));
+    p_h = sum(product(m.cosine, h), product(m.p_per_q, p_e));
+    p_e = sum(product(m.cosine, p_e), product(m.p_q, h));
+    keep_finite();
+  }
+
+ private:
+  // Mirrors of many layers make fields grow without end.
+  SUNBEAM_INLINE void keep_finite() {
+    constexpr double kLarge = 0x1p200, kLogLarge = 200 * 0.693147180559945309417;
+    const Quad size = squared_norm(s_e) + squared_norm(s_h) + squared_norm(p_h) + squared_norm(p_e);
+    const auto is_large = size > kLarge * kLarge;
+    const Quad factor = is_large ? Quad{} + 1 / kLarge : Quad{} + 1;
+    for (ComplexQuad* field : {&s_e, &s_h, &p_h, &p_e}) *field = {field->re * factor, field->im * factor};
+    log_scale += is_large ? Quad{} + kLogLarge : Quad{};
   }
 };
 
-StackPower polarised(Complex field, Complex conjugate, double q0, double q2, double damping) {
-  const Complex incident = q0 * field + conjugate;
-  return {std::norm((q0 * field - conjugate) / incident),
-          4 * q0 * q2 * std::exp(-2 * damping) / std::norm(incident)};
+// The cosines in a medium at the end of the stack, and its admittances.
+struct End {
+  ComplexQuad q_s, q_p;
+  bool is_open[4];  // light travels there
+
+  Fields fields() const { return {{Quad{} + 1, Quad{}}, q_s, {Quad{} + 1, Quad{}}, q_p, Quad{}}; }
+};
+
+void set_lane(End& end, std::size_t lane, Complex index, double ior_from, double cosine) {
+  const Complex c_squared = cosine_squared(ior_from, index, cosine), c = cosine_of(index, c_squared);
+  end.q_s.set(lane, index * c);
+  end.q_p.set(lane, c / index);
+  end.is_open[lane] = index.imag() == 0 && c_squared.real() > 0;
+}
+
+// R and T of one polarisation at the end where light comes from: its admittance q, and the real part `far` of
+// that at the other end.
+struct Polarised {
+  Quad reflectance, transmittance;
+};
+SUNBEAM_INLINE Polarised polarised(const ComplexQuad& field, const ComplexQuad& conjugate, const Quad& q,
+                                   const Quad& far) {
+  const ComplexQuad plus{q * field.re + conjugate.re, q * field.im + conjugate.im};
+  const ComplexQuad minus{q * field.re - conjugate.re, q * field.im - conjugate.im};
+  const Quad size = squared_norm(plus);
+  return {squared_norm(minus) / size, 4 * q * far / size};
+}
+
+// Gauss' rule of n nodes integrates up to 2 n radians; fringes of the second order are resolved.
+std::vector<std::pair<double, double>> thickness_factors(double spread, double waves) {
+  constexpr double kCut = 3;
+  const double radians = 2 * kPi * waves * 2 * kCut * spread;
+  const GaussRule rule = gauss_legendre(std::min(24 + static_cast<int>(radians), 1024));
+  std::vector<std::pair<double, double>> factors;
+  double sum = 0;
+  for (int i = 0; i < rule.size(); ++i) {
+    const double z = lerp(rule.node[i], -kCut, kCut);
+    factors.emplace_back(1 + z * spread, rule.weight[i] * std::exp(-0.5 * z * z));
+    sum += factors.back().second;
+  }
+  for (auto& [factor, weight] : factors) weight /= sum;
+  return factors;
+}
+
+// Means of both polarisations; the transmittance is through times exp(log_damping).
+struct LaneSides {
+  std::array<double, 4> above, through, below, log_damping;
+};
+
+SUNBEAM_FLAT_VECTOR_CLONES
+void write_sides(const LayerMatrix* layers, std::size_t count, int periods, const End& exterior,
+                 const End& base, LaneSides& sides) {
+  Fields up = base.fields(), down = exterior.fields();
+  Quad damping{};
+  for (int period = 0; period < periods; ++period)
+    for (std::size_t j = 0; j < count; ++j) {
+      up.pass(layers[count - 1 - j]);
+      down.pass(layers[j]);
+      damping += layers[j].damping;
+    }
+  const Polarised s = polarised(up.s_e, up.s_h, exterior.q_s.re, base.q_s.re),
+                  p = polarised(up.p_h, up.p_e, exterior.q_p.re, base.q_p.re),
+                  back_s = polarised(down.s_e, down.s_h, base.q_s.re, exterior.q_s.re),
+                  back_p = polarised(down.p_h, down.p_e, base.q_p.re, exterior.q_p.re);
+  for (std::size_t lane = 0; lane < 4; ++lane) {
+    sides.above[lane] = (s.reflectance[lane] + p.reflectance[lane]) / 2;
+    sides.through[lane] = (s.transmittance[lane] + p.transmittance[lane]) / 2;
+    sides.below[lane] = (back_s.reflectance[lane] + back_p.reflectance[lane]) / 2;
+    sides.log_damping[lane] = -2 * (damping[lane] + up.log_scale[lane]);
+  }
 }
 
 }  // namespace
 
+StackSpectrum::StackSpectrum(const std::vector<FilmStack>& stacks, const std::vector<double>& wavelengths_nm,
+                             double spread)
+    : count_(stacks.size()),
+      exterior_ior_(stacks.front().exterior_ior),
+      periods_(stacks.front().periods),
+      factors_{{1, 1}} {
+  double most_waves = 0;
+  for (std::size_t first = 0; first < count_; first += kLanes) {
+    Lanes lanes;
+    const std::size_t layers = stacks[first].layers.size();
+    lanes.layers.resize(layers);
+    lanes.phase.resize(layers);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t k = std::min(first + lane, count_ - 1);
+      double waves = 0;
+      for (std::size_t j = 0; j < layers; ++j) {
+        const FilmLayer& layer = stacks[k].layers[j];
+        lanes.layers[j].n[lane] = layer.index.real();
+        lanes.layers[j].k[lane] = layer.index.imag();
+        lanes.phase[j][lane] = 2 * kPi * layer.thickness_nm / wavelengths_nm[k];
+        waves += 2 * layer.index.real() * layer.thickness_nm / wavelengths_nm[k];
+      }
+      lanes.base.n[lane] = stacks[k].base_index.real();
+      lanes.base.k[lane] = stacks[k].base_index.imag();
+      most_waves = std::max(most_waves, waves * periods_);
+    }
+    lanes_.push_back(std::move(lanes));
+  }
+  if (spread > 0) factors_ = thickness_factors(spread, most_waves);
+}
+
+void StackSpectrum::add_powers(const Lanes& lanes, double factor, double weight, double ior_from,
+                               double cosine, double* above, double* through, double* below) const {
+  std::vector<LayerMatrix> layers(lanes.layers.size());
+  End exterior, base;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    for (std::size_t j = 0; j < layers.size(); ++j)
+      set_lane(layers[j], lane, {lanes.layers[j].n[lane], lanes.layers[j].k[lane]},
+               factor * lanes.phase[j][lane], ior_from, cosine);
+    set_lane(exterior, lane, exterior_ior_, ior_from, cosine);
+    set_lane(base, lane, {lanes.base.n[lane], lanes.base.k[lane]}, ior_from, cosine);
+  }
+  LaneSides sides;
+  write_sides(layers.data(), layers.size(), periods_, exterior, base, sides);
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const double r = exterior.is_open[lane] ? sides.above[lane] : 1;
+    above[lane] += weight * r;
+    if (exterior.is_open[lane])
+      through[lane] += weight * std::exp(sides.log_damping[lane]) * sides.through[lane];
+    below[lane] += weight * (base.is_open[lane] ? sides.below[lane] : r);
+  }
+}
+
+void StackSpectrum::powers(double ior_from, double cosine, double* above, double* through,
+                           double* below) const {
+  for (double* values : {above, through, below}) std::fill_n(values, lanes(), 0.0);
+  for (std::size_t chunk = 0; chunk < lanes_.size(); ++chunk)
+    for (const auto& [factor, weight] : factors_) {
+      const std::size_t at = chunk * kLanes;
+      add_powers(lanes_[chunk], factor, weight, ior_from, cosine, above + at, through + at, below + at);
+    }
+}
+
 StackPower stack_power(const FilmStack& stack, double cos_exterior, double wavelength_nm) {
   if (cos_exterior <= 0) return {1, 0};
-  const double n0 = stack.exterior_ior;
-  const Complex n2 = stack.base_index;
-  const Complex c2 = downward_cosine(n2, cosine_squared(n0, n2, cos_exterior));
-  Fields fields{1, n2 * c2, 1, c2 / n2};
-  double damping = 0;
-  for (auto layer = stack.layers.rbegin(); layer != stack.layers.rend(); ++layer) {
-    const Complex c_squared = cosine_squared(n0, layer->index, cos_exterior);
-    const LayerPhase phase = layer_phase(*layer, c_squared, wavelength_nm);
-    fields.pass(phase, layer->index, c_squared);
-    damping += phase.damping;
-  }
-  const StackPower s = polarised(fields.s_e, fields.s_h, n0 * cos_exterior, (n2 * c2).real(), damping);
-  const StackPower p = polarised(fields.p_h, fields.p_e, cos_exterior / n0, (c2 / n2).real(), damping);
-  return {(s.reflectance + p.reflectance) / 2, (s.transmittance + p.transmittance) / 2};
+  std::array<double, 4> above, through, below;
+  StackSpectrum({stack}, {wavelength_nm})
+      .powers(stack.exterior_ior, cos_exterior, above.data(), through.data(), below.data());
+  return {above[0], through[0]};
 }
 
 std::optional<double> reflectance_below(const FilmStack& stack, double cos_exterior, double wavelength_nm) {
   if (stack.base_index.imag() > 0) return {};
   const double c2_squared = cosine_squared(stack.exterior_ior, stack.base_index, cos_exterior).real();
   if (c2_squared <= 0) return {};
-  FilmStack reversed{
-      stack.base_index.real(), {stack.layers.rbegin(), stack.layers.rend()}, stack.exterior_ior};
+  FilmStack reversed{stack.base_index.real(),
+                     {stack.layers.rbegin(), stack.layers.rend()},
+                     stack.exterior_ior,
+                     stack.periods};
   return stack_power(reversed, std::sqrt(c2_squared), wavelength_nm).reflectance;
 }
 

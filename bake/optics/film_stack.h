@@ -13,21 +13,21 @@
 // sin(delta) / c and c sin(delta) are functions of c^2, smooth where a wave turns evanescent.
 #pragma once
 
+#include <array>
 #include <complex>
 #include <optional>
+#include <utility>
 #include <vector>
 
-namespace sunbeam {
+#include "sunbeam/detail/wavelengths.h"
 
-struct FilmLayer {
-  double thickness_nm;         // >= 0
-  std::complex<double> index;  // n + i k, n > 0, k >= 0 absorbs
-};
+namespace sunbeam {
 
 struct FilmStack {
   double exterior_ior;              // n0 > 0
   std::vector<FilmLayer> layers;    // from top to bottom
   std::complex<double> base_index;  // n2 + i k2
+  int periods = 1;                  // of the layers
 };
 
 // The powers of unpolarised light. What is missing in reflectance + transmittance = 1 is absorbed by the
@@ -45,5 +45,46 @@ StackPower stack_power(const FilmStack& stack, double cos_exterior, double wavel
 // Returns the reflectance from below of the direction that light takes in the base if it comes from above at
 // cos_exterior; nothing if the base absorbs or there is no such direction.
 std::optional<double> reflectance_below(const FilmStack& stack, double cos_exterior, double wavelength_nm);
+
+// One film at several wavelengths, or the mean over its platelets of uneven thickness.
+class StackSpectrum {
+ public:
+  // Takes a stack for each wavelength, equal in number of layers and periods. `spread` is the relative
+  // standard deviation of one factor on all thicknesses, normal and cut at three deviations; at most 1 / 3.
+  StackSpectrum(const std::vector<FilmStack>& stacks, const std::vector<double>& wavelengths_nm,
+                double spread = 0);
+
+  std::size_t wavelengths() const { return count_; }
+  // Returns how many numbers powers() writes to each list: wavelengths(), filled up to a multiple of four.
+  std::size_t lanes() const { return lanes_.size() * kLanes; }
+
+  // Writes the powers of light whose angle has this cosine > 0 in a clear medium of the index ior_from. The
+  // other media hold it at the angle that Snell's law gives it, which may be none. `above`: reflectance from
+  // above, 1 if there is no angle in the exterior; `through`: transmittance; `below`: reflectance from below,
+  // that from above where the base has no angle.
+  void powers(double ior_from, double cosine, double* above, double* through, double* below) const;
+
+ private:
+  static constexpr std::size_t kLanes = 4;  // wavelengths side by side
+  using Numbers = std::array<double, kLanes>;
+  struct Index {
+    Numbers n{}, k{};
+  };
+  // Some wavelengths of the stack. `phase` is 2 pi d / lambda.
+  struct Lanes {
+    std::vector<Index> layers;
+    std::vector<Numbers> phase;
+    Index base;
+  };
+
+  void add_powers(const Lanes& lanes, double factor, double weight, double ior_from, double cosine,
+                  double* above, double* through, double* below) const;
+
+  std::size_t count_;
+  double exterior_ior_;
+  int periods_;
+  std::vector<Lanes> lanes_;
+  std::vector<std::pair<double, double>> factors_;  // on all thicknesses, and their weights
+};
 
 }  // namespace sunbeam

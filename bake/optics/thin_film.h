@@ -25,14 +25,18 @@
 
 namespace sunbeam {
 
+// Returns the index of the medium that light would pass into.
+inline double bending_base_ior(const Material& m) { return m.is_opaque() ? m.exterior_ior : m.base_ior; }
+
 struct ThinFilm {
   double exterior_ior;  // n0, of the medium the light comes from
   double film_ior;      // n1
   double base_ior;      // n2, of the medium beyond
   double thickness_nm;  // d0 >= 0
 
+  // Nothing passes into an opaque base: its geometry is that of a base which does not bend light.
   static ThinFilm of(const Material& m) {
-    return {m.exterior_ior, m.film_ior, m.base_ior, m.film_thickness_nm};
+    return {m.exterior_ior, m.film_ior, bending_base_ior(m), m.film_thickness_nm};
   }
   // Returns the film as light below meets it; in "straight" mode it is met as from outside.
   static ThinFilm below(const Material& m) {
@@ -54,7 +58,7 @@ FilmPower airy(const ThinFilm& film, double cos_exterior, const Rgb& wavelengths
 // between media so alike that the half vector of a crossing has no digits left.
 inline double bending_index_ratio(const Material& material) {
   constexpr double kIndexMatch = 1e-7;
-  const double ratio = material.exterior_ior / material.base_ior;
+  const double ratio = material.exterior_ior / bending_base_ior(material);
   return material.transmission == Transmission::straight || std::abs(ratio - 1) <= kIndexMatch ? 1 : ratio;
 }
 

@@ -36,7 +36,9 @@ struct Material {
   double film_thickness_nm = 300;   // d0, 0 to 100000
   double exterior_ior = 1;          // n0, 1 to 5
   double film_ior = 1.56;           // n1, 1 to 5
-  double base_ior = 1.5;            // n2, 1 to 5
+  double base_ior = 1.5;            // n2, 1 to 5; 0.05 to 10 if the base absorbs
+  double base_extinction = 0;       // k2, 0 to 100; a base with k2 > 0 is opaque, and all it does is reflect
+  double thickness_spread = 0;      // of the film among the platelets under a pixel, relative, 0 to 0.3
   double absorption_per_nm = 0.1;   // sigma_a of the pigment, 0 to 1000
   double pigment_thickness_nm = 2;  // d1, 0 to 1e6
   double scattering_per_nm = 0;     // sigma_s of the pigment, 0 to 1000, the same at all wavelengths
@@ -46,6 +48,7 @@ struct Material {
   Microfacet microfacet = Microfacet::single;
 
   bool is_smooth() const { return roughness.u == 0; }
+  bool is_opaque() const { return base_extinction > 0; }
   double optical_depth() const { return absorption_per_nm * pigment_thickness_nm; }
   double scattering_depth() const { return scattering_per_nm * pigment_thickness_nm; }
   bool scatters() const { return scattering_depth() > 0; }
@@ -81,8 +84,11 @@ inline constexpr double kMostScatteringDepth = 100;
 // These give access by key and text, for CSV columns, table metadata and messages. Lists are separated by
 // ';'.
 const std::vector<std::string>& material_keys();
+// Says whether the key is younger than table files: they lack it, and then it has its default.
+bool is_optional_key(std::string_view key);
 std::string get_text(const Material& material, std::string_view key);
-// Throws Error "key 'K': found V; allowed: ..." (without a file: the caller adds it).
+// Throws Error "key 'K': found V; allowed: ..." (without a file: the caller adds it). What a base_ior may be
+// depends on base_extinction: set the keys in the order of material_keys().
 void set_from_text(Material& material, std::string_view key, const std::string& text);
 
 std::string_view to_string(Transmission transmission);

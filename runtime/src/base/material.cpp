@@ -16,11 +16,15 @@ struct NumericKey {
   Interval allowed;
 };
 
-constexpr std::array<NumericKey, 8> kNumericKeys{{
+constexpr Interval kOpaqueBaseIor{0.05, 10};
+
+constexpr std::array<NumericKey, 10> kNumericKeys{{
     {"film_thickness_nm", &Material::film_thickness_nm, {0, 1e5}},
     {"exterior_ior", &Material::exterior_ior, {1, 5}},
     {"film_ior", &Material::film_ior, {1, 5}},
     {"base_ior", &Material::base_ior, {1, 5}},
+    {"base_extinction", &Material::base_extinction, {0, 100}},
+    {"thickness_spread", &Material::thickness_spread, {0, 0.3}},
     {"absorption_per_nm", &Material::absorption_per_nm, {0, 1000}},
     {"pigment_thickness_nm", &Material::pigment_thickness_nm, {0, 1e6}},
     {"scattering_per_nm", &Material::scattering_per_nm, {0, 1000}},
@@ -38,8 +42,8 @@ const NumericKey* find_numeric(std::string_view key) {
 }
 
 // One value, or `count` values separated by ';'. All inside the interval.
-std::vector<double> parse_list(std::string_view key, const std::string& text, std::size_t count) {
-  const Interval allowed = allowed_interval(key);
+std::vector<double> parse_list(std::string_view key, const std::string& text, std::size_t count,
+                               const Interval& allowed) {
   const std::string range = to_text(allowed.low) + " to " + to_text(allowed.high);
   std::vector<double> values;
   for (const auto& part : split(text, ';')) {
@@ -54,20 +58,33 @@ std::vector<double> parse_list(std::string_view key, const std::string& text, st
 }
 
 void set_roughness(Material& material, const std::string& text) {
-  const auto values = parse_list("roughness", text, 2);
+  const auto values = parse_list("roughness", text, 2, allowed_interval("roughness"));
   const Roughness roughness(values.front(), values.back());
   if (!roughness.is_allowed()) refuse("roughness", text, allowed_roughness());
   material.roughness = roughness;
 }
 
 void set_albedo(Material& material, const std::string& text) {
-  const auto values = parse_list("albedo", text, 3);
+  const auto values = parse_list("albedo", text, 3, allowed_interval("albedo"));
   material.albedo = values.size() == 1 ? Rgb(values[0]) : Rgb(values[0], values[1], values[2]);
 }
 
 }  // namespace
 
 std::optional<Material::Defect> Material::defect() const {
+  if (is_opaque()) {
+    for (const auto& [key, value] : {std::pair("albedo", max_component(albedo)),
+                                     {"absorption_per_nm", optical_depth()},
+                                     {"scattering_per_nm", scattering_depth()}})
+      if (value > 0)
+        return Defect{key, "found " + to_text(value) +
+                               " with base_extinction > 0, below which nothing is seen; allowed: 0"};
+    return {};
+  }
+  const Interval clear = allowed_interval("base_ior");
+  if (!(base_ior >= clear.low && base_ior <= clear.high))
+    return Defect{"base_ior", "found " + to_text(base_ior) + "; allowed: " + to_text(clear.low) + " to " +
+                                  to_text(clear.high) + ", or more with base_extinction > 0"};
   if (!scatters()) return {};
   if (absorption_path == AbsorptionPath::product)
     return Defect{"absorption_path", "found product with scattering_per_nm > 0; allowed: sum"};
@@ -99,6 +116,8 @@ const std::vector<std::string>& material_keys() {
                                                 "film_thickness_nm",
                                                 "exterior_ior",
                                                 "film_ior",
+                                                "thickness_spread",
+                                                "base_extinction",
                                                 "base_ior",
                                                 "absorption_per_nm",
                                                 "pigment_thickness_nm",
@@ -109,6 +128,8 @@ const std::vector<std::string>& material_keys() {
                                                 "microfacet"};
   return keys;
 }
+
+bool is_optional_key(std::string_view key) { return key == "thickness_spread" || key == "base_extinction"; }
 
 std::string_view to_string(Transmission transmission) {
   return transmission == Transmission::straight ? "straight" : "refract";
@@ -161,7 +182,9 @@ void set_from_text(Material& material, std::string_view key, const std::string& 
   } else if (key == "roughness") {
     set_roughness(material, text);
   } else if (const NumericKey* numeric = find_numeric(key)) {
-    material.*(numeric->member) = parse_list(key, text, 1).front();
+    const bool is_of_metal = key == "base_ior" && material.is_opaque();
+    material.*(numeric->member) =
+        parse_list(key, text, 1, is_of_metal ? kOpaqueBaseIor : numeric->allowed).front();
   } else {
     throw Error("'" + std::string(key) + "' is not a material key");
   }

@@ -247,8 +247,11 @@ Table build(TableParts& parts) {
   const std::string hash = content_hash_of(parts.attributes, {parts.arrays.begin(), parts.arrays.end()});
   Table table;
   table.schema_version = version;
-  for (const auto& key : material_keys())
-    set_from_text(table.material, key, require(parts.attributes, "material." + key));
+  for (const auto& key : material_keys()) {
+    const std::string attribute = "material." + key;
+    if (is_optional_key(key) && !parts.attributes.contains(attribute)) continue;
+    set_from_text(table.material, key, require(parts.attributes, attribute));
+  }
   if (const auto defect = table.material.defect()) throw Error(defect->message());
   const std::string& symmetry = require(parts.attributes, "symmetry");
   if (symmetry != "isotropic" && symmetry != "anisotropic")
@@ -340,7 +343,10 @@ Attributes attributes_of(const TableView& view) {
   Attributes attributes = table.info;
   attributes["schema_version"] = std::to_string(kTableSchemaVersion);
   attributes["symmetry"] = name_of(table.symmetry);
-  for (const auto& key : material_keys()) attributes["material." + key] = get_text(table.material, key);
+  for (const auto& key : material_keys()) {
+    const std::string text = get_text(table.material, key);
+    if (!is_optional_key(key) || text != get_text(Material(), key)) attributes["material." + key] = text;
+  }
   if (table.is_factored()) {
     for (const auto& [key, value] : describe_axes(table.factors.grid)) attributes[kGridPrefix + key] = value;
     write_wavelengths(table.factors.wavelengths, attributes);

@@ -29,6 +29,8 @@ TEST(Material, TextRoundTripOfEveryKey) {
   a.exterior_ior = 1.1;
   a.film_ior = 1.7;
   a.base_ior = 2.2;
+  a.base_extinction = 3;
+  a.thickness_spread = 0.1;
   a.absorption_per_nm = 0.7;
   a.pigment_thickness_nm = 3;
   a.albedo = {0.1, 0.2, 0.3};

@@ -1,8 +1,9 @@
-// This file holds the wavelengths that a live model carries, the base at each of them, and how they fold into
-// linear RGB.
+// This file holds the wavelengths that a live model carries, film and base at each of them, and how they fold
+// into linear RGB.
 #pragma once
 
 #include <algorithm>
+#include <complex>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -15,11 +16,26 @@ inline namespace v1 {
 // Live models keep what they carry on the stack.
 inline constexpr std::size_t kMostWavelengths = 64;
 
+// One layer of a film at one wavelength.
+struct FilmLayer {
+  double thickness_nm;         // >= 0
+  std::complex<double> index;  // n + i k, n > 0, k >= 0 absorbs
+
+  bool operator==(const FilmLayer&) const = default;
+};
+
 struct Wavelengths {
   std::vector<double> nm;          // vacuum
   std::vector<double> albedo;      // of the base, 0 to 1
   std::vector<double> absorption;  // of the pigment, relative to Material::absorption_per_nm
   std::vector<Rgb> weight;         // rgb = sum_k weight_k value_k
+
+  // What Material's numbers do not say of film and base: the layers of one period from top to bottom, whose
+  // thicknesses stand for their shares in Material::film_thickness_nm; how often they are repeated; and the
+  // index of the base. A list is empty where Material says it all.
+  std::vector<std::vector<FilmLayer>> layers{};
+  int film_periods = 1;
+  std::vector<std::complex<double>> base_index{};
 
   std::size_t size() const { return nm.size(); }
   bool operator==(const Wavelengths&) const = default;

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "bake/live/exact/exact.h"
-#include "bake/live/exact/panel_curve.h"
+#include "bake/live/film/panel_curve.h"
 #include "bake/optics/thin_film.h"
 #include "sunbeam/bsdf.h"
 #include "sunbeam/detail/ggx.h"

@@ -1,4 +1,4 @@
-#include "bake/live/exact/panel_curve.h"
+#include "bake/live/film/panel_curve.h"
 
 #include <gtest/gtest.h>
 

@@ -43,15 +43,27 @@ class PanelCurve {
 
   // Writes all values at x, which is clamped to [0, 1].
   void at(double x, double* values) const {
+    const Place place = find(x);
+    if (lanes_ == 1)
+      values[0] = panel_polynomial(place.coefficients, 1, place.s);
+    else
+      polynomials(place.coefficients, place.s, values);
+  }
+
+  // Holds where x lies, for values of few functions.
+  struct Place {
+    const double* coefficients;
+    double s;
+  };
+  Place find(double x) const {
     x = std::clamp(x, 0.0, 1.0);
     std::size_t p = first_panel_[static_cast<std::size_t>(x * kBins)];
     while (x > panels_[p].end) ++p;
-    const double s = (x - panels_[p].centre) * panels_[p].scale;
-    const double* c = coefficients_.data() + p * kCoefficients * lanes_;
-    if (lanes_ == 1)
-      values[0] = panel_polynomial(c, 1, s);
-    else
-      polynomials(c, s, values);
+    return {coefficients_.data() + p * kCoefficients * lanes_, (x - panels_[p].centre) * panels_[p].scale};
+  }
+  // Returns the value of one function, by its number below count().
+  double value(const Place& place, std::size_t function) const {
+    return panel_polynomial(place.coefficients + function, lanes_, place.s);
   }
 
  private:

@@ -1,0 +1,106 @@
+#include "bake/live/film/film_curves.h"
+
+#include <algorithm>
+
+#include "bake/live/film/visible_normals.h"
+
+namespace sunbeam {
+namespace {
+
+// The narrowest panels resolve a resonance of 1e-5 in the cosine, and the square root where a dispersive base
+// begins to reflect totally.
+constexpr PanelCurve::Accuracy kAccuracy{1e-7, 1e-9, 1e-7};
+
+FilmStack stack_at(const Material& material, const Wavelengths& wavelengths, std::size_t k) {
+  FilmStack stack{material.exterior_ior, {}, {material.base_ior, material.base_extinction}, 1};
+  if (!wavelengths.base_index.empty()) stack.base_index = wavelengths.base_index[k];
+  if (wavelengths.layers.empty()) {
+    stack.layers = {{material.film_thickness_nm, material.film_ior}};
+    return stack;
+  }
+  stack.layers = wavelengths.layers[k];
+  stack.periods = wavelengths.film_periods;
+  double sum = 0;
+  for (const FilmLayer& layer : stack.layers) sum += stack.periods * layer.thickness_nm;
+  const double scale = sum > 0 ? material.film_thickness_nm / sum : 0;
+  for (FilmLayer& layer : stack.layers) layer.thickness_nm *= scale;
+  return stack;
+}
+
+bool absorbs(const Wavelengths& wavelengths) {
+  return std::ranges::any_of(wavelengths.layers, [](const std::vector<FilmLayer>& layers) {
+    return std::ranges::any_of(layers, [](const FilmLayer& layer) { return layer.index.imag() > 0; });
+  });
+}
+
+}  // namespace
+
+bool is_layered(const Material& material, const Wavelengths& wavelengths) {
+  return !wavelengths.layers.empty() || !wavelengths.base_index.empty() || material.is_opaque() ||
+         material.thickness_spread > 0;
+}
+
+StackSpectrum stack_spectrum(const Material& material, const Wavelengths& wavelengths) {
+  std::vector<FilmStack> stacks;
+  for (std::size_t k = 0; k < wavelengths.size(); ++k) stacks.push_back(stack_at(material, wavelengths, k));
+  return {stacks, wavelengths.nm, material.thickness_spread};
+}
+
+FilmCurves::FilmCurves(const Material& material, const Wavelengths& wavelengths)
+    : exterior_ior_(material.exterior_ior),
+      base_ior_(bending_base_ior(material)),
+      straight_(material.transmission == Transmission::straight),
+      opaque_(material.is_opaque()),
+      count_(wavelengths.size()),
+      critical_(critical_cosine(denser_ior(), rarer_ior())) {
+  const StackSpectrum film = stack_spectrum(material, wavelengths);
+  std::array<double, kMostWavelengths> above, through, below;
+  const auto tabulate = [&](double x, std::span<double> values) {
+    film.powers(rarer_ior(), x, above.data(), through.data(), below.data());
+    if (opaque_) through.fill(0);
+    for (std::size_t k = 0; k < count_; ++k) {
+      values[k] = above[k];
+      values[count_ + k] = through[k];
+      values[2 * count_ + k] = below[k];
+    }
+  };
+  passing_ = PanelCurve(3 * count_, tabulate, kAccuracy);
+  if (critical_ == 0 || !absorbs(wavelengths)) return;
+  const auto tabulate_total = [&](double x, std::span<double> values) {
+    film.powers(denser_ior(), x * critical_, above.data(), through.data(), below.data());
+    // A dispersive base may pass some light that has no direction here.
+    for (std::size_t k = 0; k < count_; ++k) values[k] = is_base_rarer() ? above[k] + through[k] : below[k];
+  };
+  total_ = PanelCurve(count_, tabulate_total, kAccuracy);
+}
+
+void FilmCurves::at(walk::Side side, double cosine, std::span<const int> wavelengths,
+                    FilmPowers& powers) const {
+  const bool is_below = side == walk::Side::inside && !straight_;
+  const bool is_in_rarer = critical_ == 0 || is_below == is_base_rarer();
+  double coordinate = cosine;
+  if (!is_in_rarer) {
+    const double squared = refracted_cosine_squared(denser_ior(), rarer_ior(), cosine);
+    if (squared <= 0) {
+      for (std::size_t i = 0; i < wavelengths.size(); ++i) {
+        powers.reflectance[i] = powers.reverse[i] =
+            total_.panels() == 0
+                ? 1
+                : total_.value(total_.find(cosine / critical_), static_cast<std::size_t>(wavelengths[i]));
+        powers.transmittance[i] = 0;
+      }
+      return;
+    }
+    coordinate = std::sqrt(squared);
+  }
+  const PanelCurve::Place place = passing_.find(coordinate);
+  const std::size_t own = side == walk::Side::inside ? 2 * count_ : 0;
+  for (std::size_t i = 0; i < wavelengths.size(); ++i) {
+    const std::size_t k = static_cast<std::size_t>(wavelengths[i]);
+    powers.reflectance[i] = passing_.value(place, own + k);
+    powers.transmittance[i] = passing_.value(place, count_ + k);
+    powers.reverse[i] = passing_.value(place, 2 * count_ - own + k);
+  }
+}
+
+}  // namespace sunbeam

@@ -1,0 +1,61 @@
+// This file tabulates the powers of a film over the cosine, for films that no closed form serves in time: of
+// several layers, absorbing ones, on an opaque base, dispersive, or the mean of uneven platelets.
+//
+// Light of one transverse direction (n sin(theta) is the same in all media) has one place in the table,
+// whichever side it comes from: the coordinate is its cosine in the rarer of exterior and base, in which all
+// powers are smooth. What the denser medium reflects totally has a table of its own if layers absorb.
+// Directions are those of Material: below the film light travels by base_ior, also where the base's index
+// depends on the wavelength, and in "straight" mode as outside.
+//
+// Values are right to 1e-8. R + T = 1 holds to rounding where nothing absorbs. Const members are safe to
+// share.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "bake/live/film/microsurface.h"
+#include "bake/live/film/panel_curve.h"
+#include "bake/optics/film_stack.h"
+#include "sunbeam/detail/wavelengths.h"
+
+namespace sunbeam {
+
+// Says whether the film is more than one clear layer of constant index on a clear base, so that airy() does
+// not serve it.
+bool is_layered(const Material& material, const Wavelengths& wavelengths);
+
+// Returns the film's powers in closed form, for any film.
+StackSpectrum stack_spectrum(const Material& material, const Wavelengths& wavelengths);
+
+// Holds powers by wavelength, for light of one direction.
+struct FilmPowers {
+  using Numbers = std::array<double, kMostWavelengths>;
+  Numbers reflectance;    // on the side that it comes from
+  Numbers transmittance;  // the same both ways; 0 if the base is opaque
+  Numbers reverse;        // reflectance for light that comes the other way; as above if there is none
+};
+
+class FilmCurves {
+ public:
+  FilmCurves(const Material& material, const Wavelengths& wavelengths);
+
+  // Writes the powers at the wavelengths of these numbers, for light that travels on `side` of the film at
+  // this cosine, 0 to 1, with the normal.
+  void at(walk::Side side, double cosine, std::span<const int> wavelengths, FilmPowers& powers) const;
+  std::size_t panels() const { return passing_.panels(); }
+
+ private:
+  bool is_base_rarer() const { return base_ior_ < exterior_ior_; }
+  double denser_ior() const { return is_base_rarer() ? exterior_ior_ : base_ior_; }
+  double rarer_ior() const { return is_base_rarer() ? base_ior_ : exterior_ior_; }
+
+  double exterior_ior_, base_ior_;
+  bool straight_, opaque_;
+  std::size_t count_;
+  double critical_;     // cosine of total reflection in the denser medium
+  PanelCurve passing_;  // R from outside, T, R from below, a list after the other; by the coordinate
+  PanelCurve total_;    // R of total reflection by the cosine over critical_; no panels if R = 1
+};
+
+}  // namespace sunbeam

@@ -27,8 +27,7 @@ Pfmc::Pfmc(const Material& material, const Wavelengths& wavelengths, const walk:
 
 // Packets seldom come in where light passes few facets; the general walk looks for these.
 Pfmc::Family Pfmc::family_of(const Material& material) {
-  const bool reflects_totally =
-      critical_cosine(material.exterior_ior, material.base_ior) > 0 && !material.is_smooth();
+  const bool reflects_totally = critical_cosine(ThinFilm::of(material)) > 0 && !material.is_smooth();
   if (reflects_totally) return Family::general;
   if (material.is_plain()) return Family::plain;
   return !material.scatters() && material.roughness.is_isotropic() ? Family::facets : Family::general;
@@ -68,15 +67,25 @@ double Pfmc::mean_power(const Powers& powers) const {
   return std::clamp(sum, 0.0, 1.0);
 }
 
-Pfmc::Powers Pfmc::reflectances(const walk::FilmSide& film, double cosine) const {
-  Powers powers;
-  const walk::FilmPackets<double> lanes(film, layers_.phases, std::clamp(cosine, 0.0, 1.0));
-  lanes.reflectances([&](int k, double r) { powers[k] = r; });
+FilmPowers Pfmc::film_at(walk::Side side, double cosine) const {
+  FilmPowers powers;
+  cosine = std::clamp(cosine, 0.0, 1.0);
+  if (layers_.is_layered()) {
+    layers_.curves->at(side, cosine, {layers_.phases.number.data(), static_cast<std::size_t>(layers_.count)},
+                       powers);
+    return powers;
+  }
+  const walk::FilmSide& film = side == walk::Side::outside ? layers_.film : layers_.film_below;
+  const walk::FilmPackets<double> lanes(film, layers_.phases, cosine);
+  lanes.reflectances([&](int k, double r) {
+    powers.reflectance[k] = r;
+    powers.transmittance[k] = 1 - r;
+  });
   return powers;
 }
 
 Rgb Pfmc::film_reflectance(double cos_exterior) const {
-  return fold(reflectances(layers_.film, cos_exterior).data());
+  return fold(film_at(walk::Side::outside, cos_exterior).reflectance.data());
 }
 
 Rgb Pfmc::first(const Vec3& wo, const Vec3& wi) const {
@@ -87,19 +96,29 @@ Rgb Pfmc::first(const Vec3& wo, const Vec3& wi) const {
 
 Rgb Pfmc::dirac(const Vec3& wo) const { return layers_.is_smooth() ? film_reflectance(wo.z) : Rgb(); }
 
-double Pfmc::mean_reflectance(double cos_exterior) const {
-  return mean_power(reflectances(layers_.film, cos_exterior));
+double Pfmc::entry_chance(const FilmPowers& film) const {
+  const double r = mean_power(film.reflectance);
+  return layers_.entry_chance(r, layers_.is_layered() ? mean_power(film.transmittance) : 1 - r);
+}
+
+double Pfmc::mirror_chance(const FilmPowers& film) const {
+  const double r = mean_power(film.reflectance);
+  if (!layers_.is_layered()) return r;
+  return walk::Layers::mirror_chance(r, mean_power(film.transmittance), mean_power(film.reverse));
 }
 
 double Pfmc::reflect_chance(double cos_exterior) const {
-  return layers_.entry_chance(mean_reflectance(cos_exterior));
+  return entry_chance(film_at(walk::Side::outside, cos_exterior));
 }
 
 double Pfmc::leaving_shape(double cos_exterior) const {
   if (family_ != Family::plain) return cos_exterior;
   const double below2 = 1 - square(layers_.index_ratio) * (1 - square(cos_exterior));
   if (below2 <= 0) return 0;
-  return (1 - mean_reflectance(cos_exterior)) * layers_.open_guide.density(below2) * cos_exterior;
+  const FilmPowers film = film_at(walk::Side::outside, cos_exterior);
+  const double passes =
+      layers_.is_layered() ? mean_power(film.transmittance) : 1 - mean_power(film.reflectance);
+  return passes * layers_.open_guide.density(below2) * cos_exterior;
 }
 
 double Pfmc::first_pdf(const Vec3& wo, const Vec3& wi) const {
@@ -118,6 +137,7 @@ Rgb Pfmc::estimate_rest(const Vec3& wo, const Vec3& wi, Rng& rng, Technique tech
 void Pfmc::add_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, std::span<Rgb> sums,
                     Technique technique) const {
   if (wi.z <= 0) return;
+  if (layers_.opaque && !general_.multiple) return;
   if (family_ != Family::plain) return add_general_rest(wi, wo, rng, sums, technique);
   const std::size_t chunk = technique == Technique::unidirectional ? kChunk : 1;
   for (std::size_t first = 0; first < wo.size(); first += chunk) {
@@ -148,7 +168,9 @@ void Pfmc::add_general_rest(const Vec3& wi, std::span<const Vec3> wo, Rng& rng, 
     double values[walk::GeneralWalk::kMostExits * kMostWavelengths];
     for (std::size_t k = 0; k < exits; ++k) open[k] = wo[first + k].z > 0 ? wo[first + k] : Vec3{0, 0, 1};
     std::fill_n(values, exits * layers_.count, 0.0);
-    if (family_ == Family::facets)
+    if (layers_.opaque)
+      walks.add_facets(wi, open, static_cast<int>(exits), rng, values);
+    else if (family_ == Family::facets)
       add_facets_rest(wi, open, static_cast<int>(exits), rng, values);
     else if (technique == Technique::unidirectional)
       walks.add_unidirectional(wi, open, static_cast<int>(exits), rng, values);

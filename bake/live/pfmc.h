@@ -84,8 +84,6 @@ class Pfmc {
 
   // Returns the chance that sample() chooses reflection at a facet met from outside at this cosine.
   double reflect_chance(double cos_exterior) const;
-  // Returns the film's reflectance as its choices below see it: the mean over wavelengths by importance().
-  double mean_reflectance(double cos_exterior) const;
   // Returns the density over wi of what leaves after a visit of the base, up to a factor and as if the film
   // were smooth; it is the cosine if the material is not plain.
   double leaving_shape(double cos_exterior) const;
@@ -109,7 +107,9 @@ class Pfmc {
   using Powers = walk::Spectrum<double>;
   double mean_power(const Powers& powers) const;
   Rgb fold(const double* values) const;
-  Powers reflectances(const walk::FilmSide& film, double cosine) const;
+  FilmPowers film_at(walk::Side side, double cosine) const;
+  double entry_chance(const FilmPowers& film) const;
+  double mirror_chance(const FilmPowers& film) const;
   std::optional<BsdfSample> sample_plain(const Vec3& wo, Rng& rng, const Pfmc& below) const;
   double estimate_plain_pdf(const Vec3& wo, const Vec3& wi, Rng& rng, const Pfmc& below) const;
   std::optional<BsdfSample> sample_below(double cosine, Powers& throughput, Rng& rng) const;

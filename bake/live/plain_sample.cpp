@@ -27,19 +27,19 @@ Vec3 facet_normal(const Vec3& w, const Lane::Normal& facet, Rng& rng) {
 std::optional<BsdfSample> Pfmc::sample_plain(const Vec3& wo, Rng& rng, const Pfmc& below) const {
   const Lane events(layers_);
   const auto facet = events.meet(wo.z, rng);
-  const Powers power = reflectances(layers_.film, facet.cosine);
-  const double reflect_chance = layers_.entry_chance(mean_power(power));
+  const FilmPowers film = film_at(walk::Side::outside, facet.cosine);
+  const double reflect_chance = entry_chance(film);
   if (rng.uniform() < reflect_chance) {
     const auto up = events.mirror(wo.z, facet);
     if (up.weight == 0) return {};
     return BsdfSample{reflect(wo, facet_normal(wo, facet, rng)),
-                      fold(power.data()) * (up.weight / reflect_chance), layers_.is_smooth(), 0};
+                      fold(film.reflectance.data()) * (up.weight / reflect_chance), layers_.is_smooth(), 0};
   }
   const auto crossing = events.cross(wo.z, facet, layers_.index_ratio);
   if (crossing.weight == 0) return {};
   const double share = crossing.weight / (1 - reflect_chance);
-  Powers entered = &below == this ? power : below.reflectances(layers_.film, facet.cosine);
-  for (int k = 0; k < below.layers_.count; ++k) entered[k] = (1 - entered[k]) * share;
+  Powers entered = (&below == this ? film : below.film_at(walk::Side::outside, facet.cosine)).transmittance;
+  for (int k = 0; k < below.layers_.count; ++k) entered[k] *= share;
   return below.sample_below(crossing.cosine, entered, rng);
 }
 
@@ -53,18 +53,19 @@ std::optional<BsdfSample> Pfmc::sample_below(double cosine, Powers& throughput, 
     events.attenuate(path, throughput);
 
     const auto facet = events.meet(up.cosine, rng);
-    const Powers power = reflectances(layers_.film_below, facet.cosine);
-    const double reflect_chance = mean_power(power);
+    const FilmPowers film = film_at(walk::Side::inside, facet.cosine);
+    const double reflect_chance = mirror_chance(film);
     if (rng.uniform() >= reflect_chance) {
       const auto out = events.cross(up.cosine, facet, 1 / layers_.index_ratio);
       if (out.weight == 0) return {};
       const double share = out.weight / (1 - reflect_chance);
-      for (int k = 0; k < layers_.count; ++k) throughput[k] *= (1 - power[k]) * share;
+      for (int k = 0; k < layers_.count; ++k) throughput[k] *= film.transmittance[k] * share;
       return BsdfSample{any_azimuth(out.cosine, rng), fold(throughput.data()), false, 0};
     }
     const auto down = events.mirror(up.cosine, facet);
     if (down.weight == 0) return {};
-    for (int k = 0; k < layers_.count; ++k) throughput[k] *= power[k] * (down.weight / reflect_chance);
+    for (int k = 0; k < layers_.count; ++k)
+      throughput[k] *= film.reflectance[k] * (down.weight / reflect_chance);
     cosine = down.cosine;
   }
 }
@@ -77,7 +78,7 @@ double Pfmc::leave_pdf(const Vec3& wi, Rng& rng, double& cosine) const {
   const auto crossing = events.cross(wi.z, facet, layers_.index_ratio);
   cosine = crossing.cosine;
   if (crossing.weight == 0) return 0;
-  const double pass_chance = 1 - mean_reflectance(facet.cosine);
+  const double pass_chance = 1 - mirror_chance(film_at(walk::Side::outside, facet.cosine));
   if (!layers_.bends) return pass_chance;
   const double solid_angles = square(layers_.index_ratio) * wi.z / cosine;
   return pass_chance * solid_angles * events.g1_ratio(cosine, wi.z);
@@ -103,7 +104,7 @@ double Pfmc::pdf_below(const Vec3& wi, Rng& rng) const {
     const auto up = events.leave_base(layers_.open_guide, rng);
     const auto facet = events.meet(up.cosine, rng);
     if (events.mirror(up.cosine, facet).weight == 0) return pdf;
-    if (rng.uniform() >= mean_power(reflectances(layers_.film_below, facet.cosine))) return pdf;
+    if (rng.uniform() >= mirror_chance(film_at(walk::Side::inside, facet.cosine))) return pdf;
   }
 }
 

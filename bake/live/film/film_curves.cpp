@@ -103,4 +103,16 @@ void FilmCurves::at(walk::Side side, double cosine, std::span<const int> wavelen
   }
 }
 
+void FilmCurves::at(const double* is_inside, std::span<const double> cosine, std::span<const int> wavelengths,
+                    double* reflectance, double* transmittance) const {
+  for (std::size_t k = 0; k < cosine.size(); ++k) {
+    FilmPowers powers;
+    at(is_inside[k] == 1 ? walk::Side::inside : walk::Side::outside, cosine[k], wavelengths, powers);
+    for (std::size_t i = 0; i < wavelengths.size(); ++i) {
+      reflectance[i * cosine.size() + k] = powers.reflectance[i];
+      transmittance[i * cosine.size() + k] = powers.transmittance[i];
+    }
+  }
+}
+
 }  // namespace sunbeam

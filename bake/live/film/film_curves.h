@@ -43,7 +43,11 @@ class FilmCurves {
   // Writes the powers at the wavelengths of these numbers, for light that travels on `side` of the film at
   // this cosine, 0 to 1, with the normal.
   void at(walk::Side side, double cosine, std::span<const int> wavelengths, FilmPowers& powers) const;
-  std::size_t panels() const { return passing_.panels(); }
+
+  // Does the same for directions side by side, which lie inside where `is_inside` is 1 and outside where it
+  // is 0. The powers of the i-th wavelength at direction k go to [i * cosine.size() + k].
+  void at(const double* is_inside, std::span<const double> cosine, std::span<const int> wavelengths,
+          double* reflectance, double* transmittance) const;
 
  private:
   bool is_base_rarer() const { return base_ior_ < exterior_ior_; }

@@ -40,12 +40,13 @@ void mirror_towards(const WalkContext& walk, const FacetPath& path, const Vec3& 
                     const double* beyond, double* sums) {
   const Meeting met = meet_exit(walk.general.facets, path.at, y, origin);
   if (met.factor == 0) return;
-  Powers r;
-  walk.reflectances(path.at, met.cosine, r);
+  FilmPowers film;
+  walk.film_at(path.at, met.cosine, film);
   const double weight = path.only_passed ? 0.5 : path.other / (path.other + met.factor);
   const double factor = met.factor * (walk.is_chance ? 1 : weight) *
                         (path.at.side == Side::inside ? walk.layers.radiance_scale : 1) / kGeneralWalks;
-  for (int j = 0; j < walk.count; ++j) sums[j] += path.power[j] * r[j] * (beyond ? beyond[j] : 1) * factor;
+  for (int j = 0; j < walk.count; ++j)
+    sums[j] += path.power[j] * film.reflectance[j] * (beyond ? beyond[j] : 1) * factor;
 }
 
 // From the inside out along wo, by refraction.
@@ -57,11 +58,11 @@ void pass_towards(const WalkContext& walk, const FacetPath& path, const Vec3& wo
   h = normalize(h);
   if (dot(at.travel, h) >= 0 || dot(wo, h) <= 0) return;
   const double visible = visibility(walk.general.facets, wo, depth_from_other_side(at.depth), 0);
-  Powers r;
-  walk.reflectances(at, -dot(at.travel, h), r);
+  FilmPowers film;
+  walk.film_at(at, -dot(at.travel, h), film);
   const double factor = walk.general.facets.passing_density(at.travel, h, wo, ratio) * visible *
                         (walk.is_chance ? 1 : 0.5) / (wo.z * kGeneralWalks);
-  for (int j = 0; j < walk.count; ++j) sums[j] += path.power[j] * (1 - r[j]) * factor;
+  for (int j = 0; j < walk.count; ++j) sums[j] += path.power[j] * film.transmittance[j] * factor;
 }
 
 // The facet that light is about to meet mirrors it towards an exit or lets it pass there.

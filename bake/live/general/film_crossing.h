@@ -63,10 +63,10 @@ inline bool pass_once(const WalkContext& walk, const Vec3& w, bool is_camera, Po
   Vec3 m = w;
   if (met.weight == 0) return false;
   if (walk.layers.bends && (!refract(w, h, walk.layers.index_ratio, m) || m.z <= 0)) return false;
-  Powers r;
-  walk.reflectances({Side::outside, -w, 0, !is_camera}, dot(w, h), r);
+  FilmPowers film;
+  walk.film_at({Side::outside, -w, 0, !is_camera}, dot(w, h), film);
   const double share = met.weight * (walk.layers.straight ? 1 : shadowing(walk, w, m, is_camera));
-  for (int j = 0; j < walk.count; ++j) power[j] = (1 - r[j]) * share;
+  for (int j = 0; j < walk.count; ++j) power[j] = film.transmittance[j] * share;
   travel = -m;
   return true;
 }
@@ -93,14 +93,15 @@ FacetTurn take_turn(const WalkContext& walk, Place& at, Powers& power, double th
   if (met.weight == 0) return {FacetTurn::lost, 0, 1};
   walk.scale(power, met.weight);
   const Vec3& h = met.normal;
-  Powers r;
-  walk.reflectances(at, -dot(at.travel, h), r);
+  FilmPowers film;
+  walk.film_at(at, -dot(at.travel, h), film);
+  const Powers &r = film.reflectance, &t = film.transmittance;
   Place mirrored{at.side, reflect(-at.travel, h), at.depth}, passed;
   const double stays_r = stays(mirrored);
   double stays_t = through;
   if (!walk.layers.straight) stays_t = pass_facet(walk, at, h, passed) ? stays(passed) : 0;
   double share_r = 0, share_t = 0;
-  for (int j = 0; j < walk.count; ++j) share_r += power[j] * r[j], share_t += power[j] * (1 - r[j]);
+  for (int j = 0; j < walk.count; ++j) share_r += power[j] * r[j], share_t += power[j] * t[j];
   share_r *= stays_r, share_t *= stays_t;
   const double sum = share_r + share_t;
   if (!(sum > 0)) return {FacetTurn::lost, 0, 1};
@@ -111,7 +112,7 @@ FacetTurn take_turn(const WalkContext& walk, Place& at, Powers& power, double th
     at = mirrored;
     return {FacetTurn::mirrored, stays_r, met.weight};
   }
-  for (int j = 0; j < walk.count; ++j) power[j] *= (1 - r[j]) / (1 - chance_r);
+  for (int j = 0; j < walk.count; ++j) power[j] *= t[j] / (1 - chance_r);
   at = passed;
   return {FacetTurn::passed, stays_t, met.weight};
 }
@@ -165,10 +166,10 @@ inline bool reflect_below(const WalkContext& walk, Vec3& travel, bool is_camera,
   }
   const Vec3 h = sample_normal(walk, travel, rng), m = reflect(travel, h);
   if (m.z <= 0) return false;
-  Powers r;
-  walk.reflectances({Side::inside, -travel, 0}, dot(travel, h), r);
+  FilmPowers film;
+  walk.film_at({Side::inside, -travel, 0}, dot(travel, h), film);
   const double share = shadowing(walk, travel, m, is_camera);
-  for (int j = 0; j < walk.count; ++j) power[j] *= r[j] * share;
+  for (int j = 0; j < walk.count; ++j) power[j] *= film.reflectance[j] * share;
   travel = -m;
   return true;
 }

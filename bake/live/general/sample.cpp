@@ -18,12 +18,13 @@ struct FilmOutcome {
 // One facet: true if it mirrors. `power` is multiplied by what that turn weighs.
 bool choose_mirror(const WalkContext& walk, const Place& at, double cosine, Powers& power, double& chance,
                    Rng& rng) {
-  Powers r;
-  walk.reflectances(at, cosine, r);
-  const double mirrors = walk.mirror_chance(at, r);
+  FilmPowers film;
+  walk.film_at(at, cosine, film);
+  const double mirrors = walk.mirror_chance(at, film);
   const bool is_mirrored = rng.uniform() < mirrors;
   chance = is_mirrored ? mirrors : 1 - mirrors;
-  for (int j = 0; j < walk.count; ++j) power[j] *= (is_mirrored ? r[j] : 1 - r[j]) / chance;
+  const Powers& goes_on = is_mirrored ? film.reflectance : film.transmittance;
+  for (int j = 0; j < walk.count; ++j) power[j] *= goes_on[j] / chance;
   return is_mirrored;
 }
 

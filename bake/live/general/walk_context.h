@@ -69,18 +69,26 @@ struct WalkContext {
     return true;
   }
 
-  // How often sample() takes a facet to mirror.
-  double mirror_chance(const Place& at, const Powers& r) const {
-    double mean = 0;
-    for (int j = 0; j < layers.count; ++j) mean += importance[j] * r[j];
-    mean = std::clamp(mean, 0.0, 1.0);
-    return at.is_entry ? layers.entry_chance(mean) : mean;
+  double mean(const Powers& power) const {
+    double sum = 0;
+    for (int j = 0; j < layers.count; ++j) sum += importance[j] * power[j];
+    return std::clamp(sum, 0.0, 1.0);
   }
 
-  void reflectances(const Place& at, double cosine, Powers& r) const {
+  // How often sample() takes a facet to mirror.
+  double mirror_chance(const Place& at, const FilmPowers& film) const {
+    const double r = mean(film.reflectance), t = layers.is_layered() ? mean(film.transmittance) : 1 - r;
+    if (at.is_entry) return layers.entry_chance(r, t);
+    return layers.is_layered() ? Layers::mirror_chance(r, t, mean(film.reverse)) : r;
+  }
+
+  // What a facet does with light that meets it at this cosine.
+  void film_at(const Place& at, double cosine, FilmPowers& powers) const {
     const FilmSide& film = at.side == Side::outside ? layers.film : layers.film_below;
-    kernels.reflectances(film, layers.phases, std::clamp(cosine, 0.0, 1.0), r.data());
-    if (is_chance) r[0] = mirror_chance(at, r);
+    film_powers(kernels, film, layers.phases, at.side, std::clamp(cosine, 0.0, 1.0), powers);
+    if (!is_chance) return;
+    powers.reflectance[0] = mirror_chance(at, powers);
+    powers.transmittance[0] = 1 - powers.reflectance[0];
   }
 
   // What the pigment takes over this length.

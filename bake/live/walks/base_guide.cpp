@@ -32,6 +32,7 @@ class BelowFilm {
         events.reflectances_below(down.film, [&](int j, const Lanes& r) {
           reflected_[bin][j] += mean_of_lanes(r * down.weight) / draws;
         });
+        if (layers.is_layered()) add_absorbed(down.film, draws, absorbed_[bin]);
       }
     }
   }
@@ -47,7 +48,7 @@ class BelowFilm {
     for (int j = 0; j < layers_.count; ++j) later[j] = leaves_later(j);
     return guide([&](int bin, int j) {
       const double reflected = reflected_[bin][j], attenuated = attenuation(bin, j);
-      return attenuated * (1 - reflected + reflected * attenuated * later[j]);
+      return attenuated * (1 - reflected - absorbed_[bin][j] + reflected * attenuated * later[j]);
     });
   }
 
@@ -68,7 +69,7 @@ class BelowFilm {
   double leaves_later(int j) const {
     double out = 0, back = 0;
     for (int bin = 0; bin < BaseGuide::kBins; ++bin) {
-      out += attenuation(bin, j) * (1 - reflected_[bin][j]) / BaseGuide::kBins;
+      out += attenuation(bin, j) * (1 - reflected_[bin][j] - absorbed_[bin][j]) / BaseGuide::kBins;
       back += square(attenuation(bin, j)) * reflected_[bin][j] / BaseGuide::kBins;
     }
     return layers_.albedo[j] * out / std::max(1 - layers_.albedo[j] * back, 1e-3);
@@ -82,8 +83,14 @@ class BelowFilm {
     return BaseGuide(sums);
   }
 
+  void add_absorbed(const Lanes& cosine, int draws, std::array<double, kMostWavelengths>& sums) const {
+    Spectrum<Lanes> r, t;
+    look_up_film(layers_.phases, Lanes(1), cosine, r, t);
+    for (int j = 0; j < layers_.count; ++j) sums[j] += mean_of_lanes(Lanes(1) - r[j] - t[j]) / draws;
+  }
+
   const Layers& layers_;
-  std::array<std::array<double, kMostWavelengths>, BaseGuide::kBins> reflected_;
+  std::array<std::array<double, kMostWavelengths>, BaseGuide::kBins> reflected_, absorbed_{};
 };
 
 }  // namespace

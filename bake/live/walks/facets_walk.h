@@ -12,7 +12,7 @@
 // With "sum" a forecast stands in for what roulette ends: of what is still to come, from the power that is
 // left. Light that goes on is paid the difference, so a wrong forecast costs noise and no bias.
 //
-// Both sides of the film share one reflectance: that at the cosine outside.
+// Both sides of a single clear film share one reflectance: that at the cosine outside.
 #pragma once
 
 #include "bake/live/walks/unidirectional.h"
@@ -272,8 +272,8 @@ class FacetsWalk {
   // Lets light meet one facet, from where a straight crossing leads to the cosine `unbent` below.
   SUNBEAM_INLINE Outcome meet(double unbent, Flight& light, Rng& rng) const {
     const V one(1), half(0.5), zero(0);
-    Spectrum<V> r;
-    const Ways ways = ways_on(unbent, light, r, rng);
+    Spectrum<V> r, t;
+    const Ways ways = ways_on(unbent, light, r, t, rng);
     const Turn turn = take_turn(ways, light, rng);
     const auto is_mirrored = turn.is_mirrored > half, goes_out = turn.goes_out > half;
 
@@ -282,15 +282,21 @@ class FacetsWalk {
     if (layers_.straight) escapes = select(is_mirrored, escapes, one);
     const V stays = select(goes_out, one - escapes, one);
     const V factor = turn.whole * stays / max(turn.chosen, V(1e-300));
-    weigh(select(is_mirrored, zero, factor), select(is_mirrored, factor, -factor), r, light);
+    if (layers_.is_layered()) [[unlikely]] {
+      for (int j = 0; j < layers_.count; ++j) r[j] = factor * select(is_mirrored, r[j], t[j]);
+      weigh(zero, one, r, light);
+    } else {
+      weigh(select(is_mirrored, zero, factor), select(is_mirrored, factor, -factor), r, light);
+    }
 
     const V u = Uniform<V>::draw(rng);
     const V share = one - u * stays;
     return {select(escapes >= share, one - light.is_outside, zero), share};
   }
 
-  // Draws the facet; r becomes its reflectances.
-  SUNBEAM_INLINE Ways ways_on(double unbent, const Flight& light, Spectrum<V>& r, Rng& rng) const {
+  // Draws the facet; r becomes its reflectances, t the transmittances of a layered film.
+  SUNBEAM_INLINE Ways ways_on(double unbent, const Flight& light, Spectrum<V>& r, Spectrum<V>& t,
+                              Rng& rng) const {
     const V w = -light.travel, one(1), zero(0);
     const auto was_outside = light.is_outside > V(0.5);
     const auto h = facets_.sample(w, facets_.root(w), rng);
@@ -298,14 +304,23 @@ class FacetsWalk {
     const V ratio = select(was_outside, V(layers_.index_ratio), V(1 / layers_.index_ratio));
     const V far = sqrt(max(one - squared(ratio) * (one - squared(cosine)), zero));
 
-    V mirrors(0);
-    const FilmPackets<V> film(layers_.film, layers_.phases, select(was_outside, cosine, far));
-    film.reflectances([&](int j, const V& value) {
-      r[j] = value;
-      mirrors += light.power[j] * value;
-    });
+    V mirrors(0), passes(0);
+    if (layers_.is_layered()) [[unlikely]] {
+      look_up_film(layers_.phases, one - light.is_outside, min(cosine, one), r, t);
+      for (int j = 0; j < layers_.count; ++j) {
+        mirrors += light.power[j] * r[j];
+        passes += light.power[j] * t[j];
+      }
+    } else {
+      const FilmPackets<V> film(layers_.film, layers_.phases, select(was_outside, cosine, far));
+      film.reflectances([&](int j, const V& value) {
+        r[j] = value;
+        mirrors += light.power[j] * value;
+      });
+      passes = (light.total - mirrors) * film.through();
+    }
     Ways ways{min(V(2) * cosine * h.cos_h - w, one), min(ratio * w + (far - ratio * cosine) * h.cos_h, one),
-              light.height, mirrors, (light.total - mirrors) * film.through()};
+              light.height, mirrors, passes};
     if (layers_.straight) {
       ways.passes = select(was_outside, ways.passes, zero);
       ways.passed = V(unbent);

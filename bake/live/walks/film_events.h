@@ -69,10 +69,6 @@ class FacetPackets {
   double alpha2_, alpha_;
 };
 
-// Holds one power a wavelength.
-template <class V>
-using Spectrum = std::array<V, kMostWavelengths>;
-
 // Describes light that enters along w, or by reciprocity leaves along it.
 template <class V>
 struct Crossing {
@@ -179,10 +175,14 @@ class Events {
   // Calls visit(j, T) or visit(j, R) for every wavelength.
   template <class F>
   SUNBEAM_INLINE void transmittances(const V& film_cosine, F visit) const {
+    if (layers_.is_layered()) [[unlikely]]
+      return visit_transmittances(film_cosine, visit);
     FilmPackets<V>(layers_.film, layers_.phases, film_cosine).transmittances(visit);
   }
   template <class F>
   SUNBEAM_INLINE void reflectances_below(const V& film_cosine, F visit) const {
+    if (layers_.is_layered()) [[unlikely]]
+      return visit_reflectances_below(film_cosine, visit);
     FilmPackets<V>(layers_.film_below, layers_.phases, film_cosine).reflectances(visit);
   }
 
@@ -209,6 +209,19 @@ class Events {
   }
 
  private:
+  template <class F>
+  SUNBEAM_INLINE void visit_transmittances(const V& cosine, F& visit) const {
+    Spectrum<V> r, t;
+    look_up_film(layers_.phases, V(0), cosine, r, t);
+    for (int j = 0; j < layers_.count; ++j) visit(j, t[j]);
+  }
+  template <class F>
+  SUNBEAM_INLINE void visit_reflectances_below(const V& cosine, F& visit) const {
+    Spectrum<V> r, t;
+    look_up_film(layers_.phases, V(1), cosine, r, t);
+    for (int j = 0; j < layers_.count; ++j) visit(j, r[j]);
+  }
+
   // Returns the shadowing of light that passes unbent. In "straight" mode the paper's Tbar has none; in
   // index-matched "refract" the limit of Walter's function has it.
   SUNBEAM_INLINE V unbent_shadowing(const V& w) const {

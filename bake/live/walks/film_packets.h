@@ -1,22 +1,28 @@
 // This file computes Airy's powers (bake/optics/thin_film.h has the equations and their letters) for the
 // walks, in double precision. Lanes are directions; one wavelength comes after the other.
 //
+// FilmPackets serves single clear films; what a layered one does is looked up (look_up_film).
+//
 // All but the phase is shared by the wavelengths: x and y follow from cos(phi), phi = 2 k c1, alone, and by a
 // recurrence where wavelengths have even phases. R and T are right to 1e-11, by the recurrence to 1e-10.
 #pragma once
 
 #include <array>
 
+#include "bake/live/film/film_curves.h"
 #include "bake/live/walks/packet.h"
 #include "bake/optics/thin_film.h"
 #include "sunbeam/detail/wavelengths.h"
 
 namespace sunbeam::walk {
 
-// Holds k = 2 pi n1 d0 / lambda of each wavelength.
+// Holds k = 2 pi n1 d0 / lambda of each wavelength; or, for a layered film, its curves and the numbers that
+// the wavelengths have there.
 struct FilmPhases {
   std::array<double, kMostWavelengths> k{};
   int count = 0;
+  const FilmCurves* curves = nullptr;
+  std::array<int, kMostWavelengths> number{};
   bool is_bare = false;  // no film: k = 0 throughout
   bool is_even = false;  // k[j] = k[0] + j step
 
@@ -165,5 +171,26 @@ class FilmPackets {
   V through_, c1_squared_, c1_, per_c1_squared_;
   bool may_be_evanescent_ = false;
 };
+
+// Holds one power a wavelength.
+template <class V>
+using Spectrum = std::array<V, kMostWavelengths>;
+
+// Writes the powers of a layered film for light on the side that `is_inside`, 1 or 0, says. It is apart, so
+// that walks under single films pay for no room.
+template <class V>
+__attribute__((noinline)) void look_up_film(const FilmPhases& phases, const V& is_inside, const V& cosine,
+                                            Spectrum<V>& r, Spectrum<V>& t) {
+  constexpr std::size_t kWidth = sizeof(V) / sizeof(double);
+  std::array<double, kWidth> inside, at;
+  std::array<double, kWidth * kMostWavelengths> reflectance, transmittance;
+  __builtin_memcpy(inside.data(), &is_inside, sizeof(V));
+  __builtin_memcpy(at.data(), &cosine, sizeof(V));
+  const std::size_t count = static_cast<std::size_t>(phases.count);
+  phases.curves->at(inside.data(), at, {phases.number.data(), count}, reflectance.data(),
+                    transmittance.data());
+  __builtin_memcpy(r.data(), reflectance.data(), count * sizeof(V));
+  __builtin_memcpy(t.data(), transmittance.data(), count * sizeof(V));
+}
 
 }  // namespace sunbeam::walk

@@ -32,6 +32,14 @@ const Kernels kBaselineKernels = kernels_for<Baseline>("baseline");
 const Kernels kAvx2Kernels = kernels_for<Avx2>("avx2");
 #endif
 
+void film_powers(const Kernels& kernels, const FilmSide& film, const FilmPhases& phases, Side side,
+                 double cosine, FilmPowers& powers) {
+  const std::size_t count = static_cast<std::size_t>(phases.count);
+  if (phases.curves) return phases.curves->at(side, cosine, {phases.number.data(), count}, powers);
+  kernels.reflectances(film, phases, cosine, powers.reflectance.data());
+  for (std::size_t j = 0; j < count; ++j) powers.transmittance[j] = 1 - powers.reflectance[j];
+}
+
 const Kernels& best_kernels() {
 #ifdef SUNBEAM_AVX2_KERNELS
   static const bool is_avx2 = __builtin_cpu_supports("avx2") && !baseline_is_forced();

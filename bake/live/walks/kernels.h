@@ -25,6 +25,11 @@ struct Kernels {
   void (*attenuate)(const double* tau, double length, int count, double* power);
 };
 
+// Writes the powers at one cosine and all wavelengths, for light on this side of the film. `reverse` is left
+// out for a film that is not layered: there it is the reflectance.
+void film_powers(const Kernels& kernels, const FilmSide& film, const FilmPhases& phases, Side side,
+                 double cosine, FilmPowers& powers);
+
 // These need only what every processor of this kind has (x86-64: SSE2; ARM: NEON).
 extern const Kernels kBaselineKernels;
 #ifdef SUNBEAM_AVX2_KERNELS

@@ -1,5 +1,7 @@
 #include "bake/live/walks/layers.h"
 
+#include <numeric>
+
 namespace sunbeam::walk {
 namespace {
 
@@ -25,10 +27,14 @@ Layers::Layers(const Material& material, const Wavelengths& wavelengths)
     : film(ThinFilm::of(material)),
       film_below(ThinFilm::below(material)),
       phases(phases_of(material, wavelengths)),
+      curves(sunbeam::is_layered(material, wavelengths)
+                 ? std::make_shared<const FilmCurves>(material, wavelengths)
+                 : nullptr),
       alpha(material.roughness.u),
       index_ratio(bending_index_ratio(material)),
       bends(index_ratio != 1),
       straight(material.transmission == Transmission::straight),
+      opaque(material.is_opaque()),
       count(static_cast<int>(wavelengths.size())),
       albedo{},
       tau{},
@@ -37,6 +43,8 @@ Layers::Layers(const Material& material, const Wavelengths& wavelengths)
       guide({}),
       open_guide({}),
       worth_below(1) {
+  phases.curves = curves.get();
+  std::iota(phases.number.begin(), phases.number.end(), 0);
   for (int j = 0; j < count; ++j) {
     albedo[j] = wavelengths.albedo[j];
     tau[j] = material.optical_depth() * wavelengths.absorption[j];

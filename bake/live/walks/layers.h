@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 
 #include "bake/live/walks/base_guide.h"
 #include "bake/live/walks/film_packets.h"
@@ -14,13 +15,15 @@ struct Layers {
 
   Layers(const Material& material, const Wavelengths& wavelengths);  // 1 to kMostWavelengths of them
 
-  FilmSide film;        // as seen from outside
-  FilmSide film_below;  // as seen from below: reversed, or the same in "straight" mode
-  FilmPhases phases;    // of either
-  double alpha;         // 0: smooth
-  double index_ratio;   // n0 / n2 if passing light bends, else 1
+  FilmSide film;                             // as seen from outside
+  FilmSide film_below;                       // as seen from below: reversed, or the same in "straight" mode
+  FilmPhases phases;                         // of either
+  std::shared_ptr<const FilmCurves> curves;  // of a layered film, else none
+  double alpha;                              // 0: smooth
+  double index_ratio;                        // n0 / n2 if passing light bends, else 1
   bool bends;
   bool straight;  // the crossing has no shadowing
+  bool opaque;    // nothing is seen below
 
   int count;                                    // of wavelengths
   std::array<double, kMostWavelengths> albedo;  // of the base
@@ -46,6 +49,7 @@ struct Layers {
     phases.is_even = false;
     for (std::size_t k = 0; k < picks; ++k) {
       phases.k[k] = all.phases.k[which(k)];
+      phases.number[k] = all.phases.number[which(k)];
       albedo[k] = all.albedo[which(k)];
       tau[k] = all.tau[which(k)];
       visits[k] = all.visits[which(k)];
@@ -56,10 +60,20 @@ struct Layers {
 
   // Returns the chance of mirroring at the upper surface, which gives equal shares to what reflects there and
   // to what comes back from below.
-  double entry_chance(double reflectance) const {
-    return reflectance / (reflectance + (1 - reflectance) * worth_below);
+  double entry_chance(double reflectance, double transmittance) const {
+    const double both = reflectance + transmittance * worth_below;
+    return both > 0 ? reflectance / both : 1;
   }
 
+  // Returns that of mirroring elsewhere at a layered film. `reverse` is the reflectance for light that comes
+  // the other way: the chance is the same from both sides, so that a density may be followed in either
+  // direction.
+  static double mirror_chance(double reflectance, double transmittance, double reverse) {
+    const double mean = (reflectance + reverse) / 2;
+    return mean + transmittance > 0 ? mean / (mean + transmittance) : 1;
+  }
+
+  bool is_layered() const { return curves != nullptr; }
   bool is_smooth() const { return alpha == 0; }
   // Says whether facets bend what passes, so that a given direction outside has a density of directions
   // inside.

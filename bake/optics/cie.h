@@ -9,6 +9,7 @@
 
 #include <string_view>
 
+#include "bake/optics/dispersion/visible.h"
 #include "sunbeam/core/vec.h"
 
 namespace sunbeam {
@@ -19,9 +20,6 @@ enum class Illuminant { d65, e };
 constexpr std::string_view to_string(Illuminant illuminant) {
   return illuminant == Illuminant::e ? "E" : "D65";
 }
-
-inline constexpr double kShortestVisibleNm = 380;
-inline constexpr double kLongestVisibleNm = 780;
 
 // Returns x-bar, y-bar, z-bar at a wavelength in nm. They are dimensionless, with y-bar = 1 at 555 nm, and
 // zero outside 380 to 780 nm.

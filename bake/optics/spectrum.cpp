@@ -8,8 +8,6 @@
 namespace sunbeam {
 namespace {
 
-double path_nm(const Material& material) { return 2 * material.film_ior * material.film_thickness_nm; }
-
 // Every thin film takes all the path that its number of nodes resolves.
 WavelengthQuadrature quadrature_for(Illuminant illuminant, ColorSpace color_space, double longest_path_nm) {
   const int nodes = nodes_for_path(longest_path_nm);
@@ -26,7 +24,13 @@ Spectrum::Spectrum(Illuminant illuminant, ColorSpace color_space, double longest
     : illuminant_(illuminant),
       color_space_(color_space),
       quadrature_(quadrature_for(illuminant, color_space, longest_path_nm)),
+      served_path_nm_(resolved_path_nm(quadrature_.size())),
       absorption_(std::move(absorption)) {}
+
+void Spectrum::set_film(FilmDesign film, double served_path_nm) {
+  film_ = std::move(film);
+  served_path_nm_ = std::min(served_path_nm, resolved_path_nm(quadrature_.size()));
+}
 
 Rgb Spectrum::from_rec709(const Rgb& color) const {
   if (color_space_ == ColorSpace::rec709) return color;
@@ -55,13 +59,17 @@ SpectralCurve Spectrum::albedo_curve(const Rgb& albedo) const {
   return curve;
 }
 
-Wavelengths Spectrum::wavelengths(const Material& material) const {
-  if (!is_full()) return Wavelengths::rgb3(material);
-  const double resolved = resolved_path_nm(quadrature_.size());
-  if (path_nm(material) > resolved)
+void Spectrum::require_served(const Material& material) const {
+  if (!film_.reaches(material.film_thickness_nm))
+    throw Error("key 'film_thickness_nm': found " + to_text(material.film_thickness_nm) +
+                ", but all layers of the film are 0 nm thick; allowed: 0");
+  if (is_full() && film_.path_nm(material, material.film_thickness_nm) > served_path_nm_)
     throw Error("key 'film_thickness_nm': found " + to_text(material.film_thickness_nm) +
                 "; the wavelengths of the recipe resolve films up to " +
-                to_text(resolved / (2 * material.film_ior)) + " nm");
+                to_text(served_path_nm_ / film_.path_nm(material, 1)) + " nm");
+}
+
+Wavelengths Spectrum::full_wavelengths(const Material& material) const {
   const SpectralCurve albedo = albedo_curve(material.albedo);
   Wavelengths w;
   w.nm = quadrature_.wavelength_nm;
@@ -73,9 +81,21 @@ Wavelengths Spectrum::wavelengths(const Material& material) const {
   return w;
 }
 
+Wavelengths Spectrum::wavelengths(const Material& material) const {
+  require_served(material);
+  Wavelengths w = is_full() ? full_wavelengths(material) : Wavelengths::rgb3(material);
+  film_.fill(w);
+  return w;
+}
+
 Wavelengths Spectrum::monochromatic(const Material& material, double nm) const {
-  if (!is_full()) return Wavelengths::monochromatic(material, nm);
-  return {{nm}, {interpolate(albedo_curve(material.albedo), nm)}, {absorption_(nm)}, {Rgb(1)}};
+  Wavelengths w = Wavelengths::monochromatic(material, nm);
+  if (is_full()) {
+    w.albedo = {interpolate(albedo_curve(material.albedo), nm)};
+    w.absorption = {absorption_(nm)};
+  }
+  film_.fill(w);
+  return w;
 }
 
 std::map<std::string, std::string> Spectrum::attributes() const {

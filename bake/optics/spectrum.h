@@ -7,12 +7,15 @@
 //       illuminant. The albedo has a spectrum, given or uplifted from RGB, and the pigment's absorption a
 //       relative spectrum.
 //
+// It holds the film's design too, and says what its layers and the base are at the wavelengths.
+//
 // Material::albedo is in the space of the fold; artists write Rec.709, and from_rec709() takes them there.
 #pragma once
 
 #include <map>
 #include <string>
 
+#include "bake/optics/dispersion/film_design.h"
 #include "bake/optics/spectral_material.h"
 #include "sunbeam/detail/wavelengths.h"
 
@@ -32,6 +35,11 @@ class Spectrum {
   Spectrum(Illuminant illuminant, ColorSpace color_space, double longest_path_nm,
            AbsorptionShape absorption = AbsorptionShape::flat());
 
+  // Sets the design of film and base. In full served_path_nm is the longest path 2 sum(n d) that the
+  // wavelengths are meant for, if they resolve it.
+  void set_film(FilmDesign film, double served_path_nm);
+  const FilmDesign& film() const { return film_; }
+
   bool is_full() const { return quadrature_.size() > 0; }
   ColorSpace color_space() const { return color_space_; }
 
@@ -48,12 +56,13 @@ class Spectrum {
 
   // Returns the wavelengths that the live model carries. An albedo other than the one set is uplifted on the
   // way. In full it throws Error if no reflectance has the albedo, or if the film is thicker than the nodes
-  // resolve.
+  // serve.
   Wavelengths wavelengths(const Material& material) const;
 
   // Returns one wavelength (nm, vacuum) for every channel. In rgb3 it has the albedo's first channel and flat
   // absorption, in full the albedo and absorption at that wavelength; an uplifted albedo is joined by
-  // straight lines, constant beyond the nodes.
+  // straight lines, constant beyond the nodes. Throws Error if an index of the film's design is not known
+  // there.
   Wavelengths monochromatic(const Material& material, double nm) const;
 
   // Returns the attributes of a table: spectrum, and in full also color_space, illuminant, wavelengths (nm,
@@ -62,10 +71,14 @@ class Spectrum {
 
  private:
   SpectralCurve albedo_curve(const Rgb& albedo) const;
+  void require_served(const Material& material) const;
+  Wavelengths full_wavelengths(const Material& material) const;
 
   Illuminant illuminant_ = Illuminant::d65;
   ColorSpace color_space_ = ColorSpace::rec709;
   WavelengthQuadrature quadrature_;  // empty: rgb3
+  FilmDesign film_;
+  double served_path_nm_ = 0;  // in full
   AbsorptionShape absorption_ = AbsorptionShape::flat();
   Rgb albedo_;                  // RGB albedo of the base, to which albedo_curve_ belongs
   SpectralCurve albedo_curve_;  // empty if no albedo is set

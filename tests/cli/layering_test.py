@@ -40,7 +40,7 @@ TABLE_HEADER = r"runtime/include/sunbeam/table.*|runtime/src/(?:table|fit|lookup
 # floor know nothing of one another.
 FLOORS = {
     "bake": (
-        ("bake/base",), ("bake/optics",), ("bake/optics/dispersion",),
+        ("bake/base",), ("bake/optics/dispersion",), ("bake/optics",), ("bake/optics/layered",),
         ("bake/live/film",), ("bake/live/walks", "bake/live/exact"), ("bake/live/general",), ("bake/live/adding_doubling",),
         ("bake/live",),
         ("bake/recipe",), ("bake/blocks",), ("bake/factored", "bake/dense"), ("bake/check",), ("bake/jobs",),

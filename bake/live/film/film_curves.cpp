@@ -11,22 +11,6 @@ namespace {
 // begins to reflect totally.
 constexpr PanelCurve::Accuracy kAccuracy{1e-7, 1e-9, 1e-7};
 
-FilmStack stack_at(const Material& material, const Wavelengths& wavelengths, std::size_t k) {
-  FilmStack stack{material.exterior_ior, {}, {material.base_ior, material.base_extinction}, 1};
-  if (!wavelengths.base_index.empty()) stack.base_index = wavelengths.base_index[k];
-  if (wavelengths.layers.empty()) {
-    stack.layers = {{material.film_thickness_nm, material.film_ior}};
-    return stack;
-  }
-  stack.layers = wavelengths.layers[k];
-  stack.periods = wavelengths.film_periods;
-  double sum = 0;
-  for (const FilmLayer& layer : stack.layers) sum += stack.periods * layer.thickness_nm;
-  const double scale = sum > 0 ? material.film_thickness_nm / sum : 0;
-  for (FilmLayer& layer : stack.layers) layer.thickness_nm *= scale;
-  return stack;
-}
-
 bool absorbs(const Wavelengths& wavelengths) {
   return std::ranges::any_of(wavelengths.layers, [](const std::vector<FilmLayer>& layers) {
     return std::ranges::any_of(layers, [](const FilmLayer& layer) { return layer.index.imag() > 0; });
@@ -34,17 +18,6 @@ bool absorbs(const Wavelengths& wavelengths) {
 }
 
 }  // namespace
-
-bool is_layered(const Material& material, const Wavelengths& wavelengths) {
-  return !wavelengths.layers.empty() || !wavelengths.base_index.empty() || material.is_opaque() ||
-         material.thickness_spread > 0;
-}
-
-StackSpectrum stack_spectrum(const Material& material, const Wavelengths& wavelengths) {
-  std::vector<FilmStack> stacks;
-  for (std::size_t k = 0; k < wavelengths.size(); ++k) stacks.push_back(stack_at(material, wavelengths, k));
-  return {stacks, wavelengths.nm, material.thickness_spread};
-}
 
 FilmCurves::FilmCurves(const Material& material, const Wavelengths& wavelengths)
     : exterior_ior_(material.exterior_ior),

@@ -16,17 +16,10 @@
 
 #include "bake/live/film/microsurface.h"
 #include "bake/live/film/panel_curve.h"
-#include "bake/optics/film_stack.h"
+#include "bake/optics/layered/layered_film.h"
 #include "sunbeam/detail/wavelengths.h"
 
 namespace sunbeam {
-
-// Says whether the film is more than one clear layer of constant index on a clear base, so that airy() does
-// not serve it.
-bool is_layered(const Material& material, const Wavelengths& wavelengths);
-
-// Returns the film's powers in closed form, for any film.
-StackSpectrum stack_spectrum(const Material& material, const Wavelengths& wavelengths);
 
 // Holds powers by wavelength, for light of one direction.
 struct FilmPowers {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/optics/cie.h"
+#include "bake/optics/dispersion/visible.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/text.h"
 

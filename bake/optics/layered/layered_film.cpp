@@ -1,0 +1,35 @@
+#include "bake/optics/layered/layered_film.h"
+
+namespace sunbeam {
+namespace {
+
+FilmStack stack_at(const Material& material, const Wavelengths& wavelengths, std::size_t k) {
+  FilmStack stack{material.exterior_ior, {}, {material.base_ior, material.base_extinction}, 1};
+  if (!wavelengths.base_index.empty()) stack.base_index = wavelengths.base_index[k];
+  if (wavelengths.layers.empty()) {
+    stack.layers = {{material.film_thickness_nm, material.film_ior}};
+    return stack;
+  }
+  stack.layers = wavelengths.layers[k];
+  stack.periods = wavelengths.film_periods;
+  double sum = 0;
+  for (const FilmLayer& layer : stack.layers) sum += stack.periods * layer.thickness_nm;
+  const double scale = sum > 0 ? material.film_thickness_nm / sum : 0;
+  for (FilmLayer& layer : stack.layers) layer.thickness_nm *= scale;
+  return stack;
+}
+
+}  // namespace
+
+bool is_layered(const Material& material, const Wavelengths& wavelengths) {
+  return !wavelengths.layers.empty() || !wavelengths.base_index.empty() || material.is_opaque() ||
+         material.thickness_spread > 0;
+}
+
+StackSpectrum stack_spectrum(const Material& material, const Wavelengths& wavelengths) {
+  std::vector<FilmStack> stacks;
+  for (std::size_t k = 0; k < wavelengths.size(); ++k) stacks.push_back(stack_at(material, wavelengths, k));
+  return {stacks, wavelengths.nm, material.thickness_spread};
+}
+
+}  // namespace sunbeam

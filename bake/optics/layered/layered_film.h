@@ -1,0 +1,17 @@
+// This file says which films are stacks, and computes their powers at the wavelengths of a live model.
+#pragma once
+
+#include "bake/optics/film_stack.h"
+#include "sunbeam/detail/wavelengths.h"
+#include "sunbeam/material.h"
+
+namespace sunbeam {
+
+// Says whether the film is more than one clear layer of constant index on a clear base, so that airy() does
+// not serve it.
+bool is_layered(const Material& material, const Wavelengths& wavelengths);
+
+// Returns the film's powers in closed form, for any film.
+StackSpectrum stack_spectrum(const Material& material, const Wavelengths& wavelengths);
+
+}  // namespace sunbeam

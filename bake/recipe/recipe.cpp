@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "bake/optics/layered/film_nodes.h"
+#include "bake/recipe/film_keys.h"
+#include "bake/recipe/material_keys.h"
+#include "bake/recipe/range_of.h"
 #include "runtime/config/config.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/factor_frame.h"
@@ -11,51 +15,6 @@
 
 namespace sunbeam {
 namespace {
-
-Range range_of(std::string_view key) {
-  const Interval allowed = allowed_interval(key);
-  return {allowed.low, allowed.high};
-}
-
-constexpr const char* kRoughness = "roughness";
-
-// One value, or [alpha_u, alpha_v].
-Roughness read_roughness(const ConfigTable& config, const Roughness& fallback) {
-  if (!config.has(kRoughness)) return fallback;
-  const auto values = config.is_list(kRoughness)
-                          ? config.numbers(kRoughness, range_of(kRoughness))
-                          : std::vector{config.number(kRoughness, range_of(kRoughness))};
-  if (values.empty() || values.size() > 2)
-    config.fail(kRoughness,
-                fmt::format("found {} numbers; allowed: one number or a list of 2", values.size()));
-  const Roughness roughness(values.front(), values.back());
-  if (!roughness.is_allowed())
-    config.fail(kRoughness,
-                fmt::format("found {}; allowed: {}", fmt::join(values, ", "), allowed_roughness()));
-  return roughness;
-}
-
-// All but the albedo, which waits for the spectrum.
-Material read_material(const ConfigTable& config) {
-  Material m;
-  m.transmission = static_cast<Transmission>(config.choice("transmission", {"straight", "refract"}, 1));
-  m.absorption_path = static_cast<AbsorptionPath>(config.choice("absorption_path", {"product", "sum"}, 1));
-  const auto number = [&](const char* key, double& value) {
-    value = config.number(key, range_of(key), value);
-  };
-  number("film_thickness_nm", m.film_thickness_nm);
-  number("exterior_ior", m.exterior_ior);
-  number("film_ior", m.film_ior);
-  number("base_ior", m.base_ior);
-  number("absorption_per_nm", m.absorption_per_nm);
-  number("pigment_thickness_nm", m.pigment_thickness_nm);
-  number("scattering_per_nm", m.scattering_per_nm);
-  number("anisotropy", m.anisotropy);
-  m.roughness = read_roughness(config, m.roughness);
-  m.microfacet = static_cast<Microfacet>(config.choice("microfacet", {"single", "multiple"}, 0));
-  if (const auto defect = m.defect()) config.fail(defect->key, defect->text);
-  return m;
-}
 
 // The axes without nodes. Their coordinates follow how the rest depends on a parameter: like the square root
 // of the base IOR's distance from index match, and ever more slowly with absorption; less so with that of a
@@ -103,7 +62,19 @@ std::vector<double> read_nodes(const ConfigTable& grid, const Axis& axis) {
   return spaced_nodes(axis, from, to, static_cast<std::size_t>(count));
 }
 
-std::vector<Axis> read_grid(const ConfigTable& grid, const Material& material) {
+// A grid varies numbers of the material, and those of its pigment where light reaches it.
+void refuse_fixed(const ConfigTable& grid, const Material& material, const FilmDesign& film) {
+  const auto& [thickness, base_ior, absorption] = kParameterNames;
+  if (grid.has(base_ior) && (film.base || material.is_opaque()))
+    grid.fail(base_ior, fmt::format("found, but the base {}; allowed with a number as material.base_ior and "
+                                    "no base_extinction",
+                                    material.is_opaque() ? "absorbs" : "has an index of its own"));
+  if (grid.has(absorption) && material.is_opaque())
+    grid.fail(absorption, "found, but the base absorbs, and nothing is seen below it; leave the key out");
+}
+
+std::vector<Axis> read_grid(const ConfigTable& grid, const Material& material, const FilmDesign& film) {
+  refuse_fixed(grid, material, film);
   const auto defaults = Parameters::of(material).values();
   std::vector<Axis> axes;
   for (Axis axis : bare_axes(material)) {
@@ -111,21 +82,48 @@ std::vector<Axis> read_grid(const ConfigTable& grid, const Material& material) {
     if (const std::string defect = axis.defect(); !defect.empty()) grid.fail(axis.name, defect);
     axes.push_back(std::move(axis));
   }
+  require_proportions(grid, film, axes[0].high());
   return axes;
 }
 
-// The thickest film of the recipe has to be resolved by kMostWavelengths wavelengths.
-double longest_path(const ConfigTable& grid_config, const ConfigTable& material_config,
-                    const std::vector<Axis>& grid, const Material& material) {
-  const double in_grid = grid[0].high();
-  const double thickest = std::max(in_grid, material.film_thickness_nm);
-  const double path = 2 * material.film_ior * thickest, longest = resolved_path_nm(kMostWavelengths);
+// The thickest film of the recipe, and where it is said.
+struct Thickest {
+  double nm;
+  const ConfigTable& config;
+  const char* key;
+};
+
+Thickest thickest_film(const ConfigTable& grid_config, const ConfigTable& material_config,
+                       const Recipe& recipe) {
+  const double in_grid = recipe.grid[0].high(), in_material = recipe.material.film_thickness_nm;
+  if (in_grid >= in_material && grid_config.has(kParameterNames[0]))
+    return {in_grid, grid_config, kParameterNames[0]};
+  return {in_material, material_config, thickness_key(material_config)};
+}
+
+// The thickest film has to be resolved by kMostWavelengths wavelengths.
+double longest_path(const Thickest& thickest, const Material& material, const FilmDesign& film) {
+  const double path = film.path_nm(material, thickest.nm), longest = resolved_path_nm(kMostWavelengths);
   if (path > longest)
-    (thickest == in_grid && grid_config.has(kParameterNames[0]) ? grid_config : material_config)
-        .fail(kParameterNames[0],
-              fmt::format("found {:g}; allowed with spectrum.mode \"full\" and film_ior {:g}: up to {:g}",
-                          thickest, material.film_ior, std::floor(longest / (2 * material.film_ior))));
+    thickest.config.fail(
+        thickest.key,
+        fmt::format("found {:g}; allowed with spectrum.mode \"full\" and {}: up to {:g}", thickest.nm,
+                    film.layers.empty() ? fmt::format("film_ior {:g}", material.film_ior)
+                                        : "the indices of its layers",
+                    std::floor(longest / film.path_nm(material, 1))));
   return path;
+}
+
+// Layers and opaque bases have no rule for their number of wavelengths, so that it is measured.
+FilmNodes measured_nodes(const Thickest& thickest, const Material& material, const FilmDesign& film,
+                         Illuminant illuminant, ColorSpace space) {
+  const FilmNodes nodes = nodes_for_film(material, film, illuminant, space, thickest.nm);
+  if (nodes.error > kMostFoldingError)
+    thickest.config.fail(thickest.key,
+                         fmt::format("found a film of {:g} nm, of whose colours one in a hundred is off by "
+                                     "{:.2g} % or more at {} wavelengths; allowed: up to {:g} %",
+                                     thickest.nm, 100 * nodes.error, nodes.count, 100 * kMostFoldingError));
+  return nodes;
 }
 
 constexpr const char* kAbsorptionSpectrum = "absorption_spectrum";
@@ -150,22 +148,35 @@ void refuse_outside_full(const ConfigTable& config, const char* key) {
 }
 
 Spectrum read_spectrum(const ConfigTable& config, const ConfigTable& material, const ConfigTable& grid,
-                       const Recipe& recipe) {
+                       const Recipe& recipe, const FilmDesign& film) {
   if (config.choice("mode", {"rgb3", "full"}, 0) == 0) {
     for (const char* key : {"illuminant", "color_space"}) refuse_outside_full(config, key);
     refuse_outside_full(material, kAbsorptionSpectrum);
-    return Spectrum();
+    Spectrum spectrum;
+    spectrum.set_film(film, 0);
+    return spectrum;
   }
   const auto illuminant = config.choice("illuminant", {"D65", "E"}, 0) == 0 ? Illuminant::d65 : Illuminant::e;
   const auto space =
       config.choice("color_space", {"acescg", "rec709"}, 0) == 0 ? ColorSpace::acescg : ColorSpace::rec709;
-  return Spectrum(illuminant, space, longest_path(grid, material, recipe.grid, recipe.material),
-                  read_absorption_shape(material));
+  const Thickest thickest = thickest_film(grid, material, recipe);
+  const double path = longest_path(thickest, recipe.material, film);
+  if (film == FilmDesign() && !recipe.material.is_opaque())
+    return Spectrum(illuminant, space, path, read_absorption_shape(material));
+  const FilmNodes nodes = measured_nodes(thickest, recipe.material, film, illuminant, space);
+  Spectrum spectrum(illuminant, space, resolved_path_nm(static_cast<std::size_t>(nodes.count)),
+                    read_absorption_shape(material));
+  spectrum.set_film(film, nodes.path_nm);
+  return spectrum;
 }
 
 // Reads the albedo into spectrum and material.
 void read_albedo(const ConfigTable& config, Spectrum& spectrum, Material& material) {
   constexpr const char* kAlbedo = "albedo";
+  if (material.is_opaque()) {
+    if (spectrum.is_full()) spectrum.set_albedo(material.albedo);
+    return;
+  }
   if (config.is_list_of_lists(kAlbedo)) {
     if (!spectrum.is_full()) refuse_outside_full(config, kAlbedo);
     material.albedo = spectrum.set_albedo(config.curve(kAlbedo, kWavelengthNm, {0, 1}));
@@ -274,9 +285,10 @@ Recipe read_recipe(const ConfigTable& config, const std::string& name, RemovedKe
   Recipe recipe;
   recipe.name = name;
   const ConfigTable material = config.table("material"), grid = config.table("grid");
-  recipe.material = read_material(material);
-  recipe.grid = read_grid(grid, recipe.material);
-  recipe.spectrum = read_spectrum(config.table("spectrum"), material, grid, recipe);
+  const MaterialKeys keys = read_material(material);
+  recipe.material = keys.material;
+  recipe.grid = read_grid(grid, keys.material, keys.film);
+  recipe.spectrum = read_spectrum(config.table("spectrum"), material, grid, recipe, keys.film);
   read_albedo(material, recipe.spectrum, recipe.material);
   read_table(table, recipe);
   refuse_dense_below(grid, recipe);

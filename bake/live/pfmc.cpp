@@ -14,7 +14,7 @@ Pfmc::Pfmc(const Material& material, const Wavelengths& wavelengths, const walk:
       weight_{},
       importance_{},
       ggx_(material.roughness),
-      kernels_(&kernels) {
+      kernels_(layers_.is_layered() ? kernels.layered : &kernels) {
   double sum = 0;
   for (int k = 0; k < layers_.count; ++k) {
     weight_[k] = wavelengths.weight[k];

@@ -38,9 +38,12 @@ std::optional<BsdfSample> Pfmc::sample_plain(const Vec3& wo, Rng& rng, const Pfm
   const auto crossing = events.cross(wo.z, facet, layers_.index_ratio);
   if (crossing.weight == 0) return {};
   const double share = crossing.weight / (1 - reflect_chance);
-  Powers entered = (&below == this ? film : below.film_at(walk::Side::outside, facet.cosine)).transmittance;
-  for (int k = 0; k < below.layers_.count; ++k) entered[k] *= share;
-  return below.sample_below(crossing.cosine, entered, rng);
+  const auto go_on = [&](const FilmPowers& entering) {
+    Powers throughput;
+    for (int k = 0; k < below.layers_.count; ++k) throughput[k] = entering.transmittance[k] * share;
+    return below.sample_below(crossing.cosine, throughput, rng);
+  };
+  return &below == this ? go_on(film) : go_on(below.film_at(walk::Side::outside, facet.cosine));
 }
 
 // A walk that reaches the base at `cosine`.

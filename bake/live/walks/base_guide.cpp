@@ -22,19 +22,10 @@ double cosine_of_bin(int bin) { return std::sqrt((bin + 0.5) / BaseGuide::kBins)
 class BelowFilm {
  public:
   explicit BelowFilm(const Layers& layers) : layers_(layers) {
-    const Events<Lanes> events(layers);
-    const int draws = layers.is_smooth() ? 1 : kDraws;
-    Rng rng(1, 0);
-    for (int bin = 0; bin < BaseGuide::kBins; ++bin) {
-      reflected_[bin].fill(0);
-      for (int draw = 0; draw < draws; ++draw) {
-        const auto down = events.reflect_below(Lanes(cosine_of_bin(bin)), rng);
-        events.reflectances_below(down.film, [&](int j, const Lanes& r) {
-          reflected_[bin][j] += mean_of_lanes(r * down.weight) / draws;
-        });
-        if (layers.is_layered()) add_absorbed(down.film, draws, absorbed_[bin]);
-      }
-    }
+    if (layers.is_layered())
+      meet_film<true>();
+    else
+      meet_film<false>();
   }
 
   // To walks that go on: what comes back down, through the pigment both times.
@@ -81,6 +72,23 @@ class BelowFilm {
     for (int bin = 0; bin < BaseGuide::kBins; ++bin)
       for (int j = 0; j < layers_.count; ++j) sums[bin] += importance(bin, j);
     return BaseGuide(sums);
+  }
+
+  template <bool kLayered>
+  void meet_film() {
+    const Events<Lanes, kLayered> events(layers_);
+    const int draws = layers_.is_smooth() ? 1 : kDraws;
+    Rng rng(1, 0);
+    for (int bin = 0; bin < BaseGuide::kBins; ++bin) {
+      reflected_[bin].fill(0);
+      for (int draw = 0; draw < draws; ++draw) {
+        const auto down = events.reflect_below(Lanes(cosine_of_bin(bin)), rng);
+        events.reflectances_below(down.film, [&](int j, const Lanes& r) {
+          reflected_[bin][j] += mean_of_lanes(r * down.weight) / draws;
+        });
+        if constexpr (kLayered) add_absorbed(down.film, draws, absorbed_[bin]);
+      }
+    }
   }
 
   void add_absorbed(const Lanes& cosine, int draws, std::array<double, kMostWavelengths>& sums) const {

@@ -29,7 +29,7 @@ namespace sunbeam::walk {
 
 inline constexpr int kCameraVisits = 4;
 
-template <class V>
+template <class V, bool kLayered = false>
 class BidirectionalWalk {
  public:
   SUNBEAM_INLINE explicit BidirectionalWalk(const Layers& layers)
@@ -145,7 +145,7 @@ class BidirectionalWalk {
                                    [&](int j, const V& t) { estimate[j] += power[j] * t * factor; });
   }
 
-  Steps<V> steps_;
+  Steps<V, kLayered> steps_;
   const Layers& layers_;
   bool rough_, glossy_;
 };

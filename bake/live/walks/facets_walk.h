@@ -19,7 +19,7 @@
 
 namespace sunbeam::walk {
 
-template <class V>
+template <class V, bool kLayered = false>
 class FacetsWalk {
  public:
   SUNBEAM_INLINE explicit FacetsWalk(const Layers& layers)
@@ -282,7 +282,7 @@ class FacetsWalk {
     if (layers_.straight) escapes = select(is_mirrored, escapes, one);
     const V stays = select(goes_out, one - escapes, one);
     const V factor = turn.whole * stays / max(turn.chosen, V(1e-300));
-    if (layers_.is_layered()) [[unlikely]] {
+    if constexpr (kLayered) {
       for (int j = 0; j < layers_.count; ++j) r[j] = factor * select(is_mirrored, r[j], t[j]);
       weigh(zero, one, r, light);
     } else {
@@ -305,7 +305,7 @@ class FacetsWalk {
     const V far = sqrt(max(one - squared(ratio) * (one - squared(cosine)), zero));
 
     V mirrors(0), passes(0);
-    if (layers_.is_layered()) [[unlikely]] {
+    if constexpr (kLayered) {
       look_up_film(layers_.phases, one - light.is_outside, min(cosine, one), r, t);
       for (int j = 0; j < layers_.count; ++j) {
         mirrors += light.power[j] * r[j];
@@ -360,7 +360,7 @@ class FacetsWalk {
   }
 
   const Layers& layers_;
-  Events<V> events_;
+  Events<V, kLayered> events_;
   FacetPackets<V> facets_;
 };
 

@@ -94,7 +94,8 @@ struct Connection {
   V reverse;  // and of the first given the second
 };
 
-template <class V>
+// `kLayered` says whether the film is a layered one: walks under a single clear film are compiled without it.
+template <class V, bool kLayered = false>
 class Events {
  public:
   SUNBEAM_INLINE explicit Events(const Layers& layers) : layers_(layers), facets_(layers.alpha) {}
@@ -175,15 +176,17 @@ class Events {
   // Calls visit(j, T) or visit(j, R) for every wavelength.
   template <class F>
   SUNBEAM_INLINE void transmittances(const V& film_cosine, F visit) const {
-    if (layers_.is_layered()) [[unlikely]]
-      return visit_transmittances(film_cosine, visit);
-    FilmPackets<V>(layers_.film, layers_.phases, film_cosine).transmittances(visit);
+    if constexpr (kLayered)
+      visit_transmittances(film_cosine, visit);
+    else
+      FilmPackets<V>(layers_.film, layers_.phases, film_cosine).transmittances(visit);
   }
   template <class F>
   SUNBEAM_INLINE void reflectances_below(const V& film_cosine, F visit) const {
-    if (layers_.is_layered()) [[unlikely]]
-      return visit_reflectances_below(film_cosine, visit);
-    FilmPackets<V>(layers_.film_below, layers_.phases, film_cosine).reflectances(visit);
+    if constexpr (kLayered)
+      visit_reflectances_below(film_cosine, visit);
+    else
+      FilmPackets<V>(layers_.film_below, layers_.phases, film_cosine).reflectances(visit);
   }
 
   // Describes light that leaves the base upwards, as the guide has it.

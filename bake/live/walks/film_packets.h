@@ -176,8 +176,7 @@ class FilmPackets {
 template <class V>
 using Spectrum = std::array<V, kMostWavelengths>;
 
-// Writes the powers of a layered film for light on the side that `is_inside`, 1 or 0, says. It is apart, so
-// that walks under single films pay for no room.
+// Writes the powers of a layered film for light on the side that `is_inside`, 1 or 0, says.
 template <class V>
 __attribute__((noinline)) void look_up_film(const FilmPhases& phases, const V& is_inside, const V& cosine,
                                             Spectrum<V>& r, Spectrum<V>& t) {

@@ -3,10 +3,11 @@
 
 namespace sunbeam::walk {
 
-template <class Arch>
+template <class Arch, bool kLayered>
 SUNBEAM_FLATTEN void bidirectional(const Layers& layers, double wi, double wo, Rng& rng, double* sums) {
-  BidirectionalWalk<Packet<Arch>>(layers).add(wi, wo, rng, sums);
+  BidirectionalWalk<Packet<Arch>, kLayered>(layers).add(wi, wo, rng, sums);
 }
-template void bidirectional<SUNBEAM_ARCH>(const Layers&, double, double, Rng&, double*);
+template void bidirectional<SUNBEAM_ARCH, false>(const Layers&, double, double, Rng&, double*);
+template void bidirectional<SUNBEAM_ARCH, true>(const Layers&, double, double, Rng&, double*);
 
 }  // namespace sunbeam::walk

@@ -4,13 +4,13 @@
 
 namespace sunbeam::walk {
 
-template <class Arch>
+template <class Arch, bool kLayered>
 void unidirectional(const Layers& layers, double wi, const double* wo, int exits, Rng& rng, double* sums);
-template <class Arch>
+template <class Arch, bool kLayered>
 void bidirectional(const Layers& layers, double wi, double wo, Rng& rng, double* sums);
-template <class Arch>
+template <class Arch, bool kLayered>
 void multiple_facets(const Layers& layers, double wi, const double* wo, int exits, Rng& rng, double* sums);
-template <class Arch>
+template <class Arch, bool kLayered>
 void returns(const Layers& layers, Rng& rng, double* sums);
 template <class Arch>
 void reflectances(const FilmSide& film, const FilmPhases& phases, double cosine, double* r);
@@ -19,17 +19,28 @@ void attenuate(const double* tau, double length, int count, double* power);
 
 namespace {
 
-template <class Arch>
-constexpr Kernels kernels_for(const char* name) {
-  return {name,          unidirectional<Arch>, bidirectional<Arch>, multiple_facets<Arch>,
-          returns<Arch>, reflectances<Arch>,   attenuate<Arch>};
+template <class Arch, bool kLayered>
+constexpr Kernels kernels_for(const char* name, const Kernels* layered) {
+  return {name,
+          unidirectional<Arch, kLayered>,
+          bidirectional<Arch, kLayered>,
+          multiple_facets<Arch, kLayered>,
+          returns<Arch, kLayered>,
+          reflectances<Arch>,
+          attenuate<Arch>,
+          layered};
 }
+
+constexpr Kernels kLayeredBaseline = kernels_for<Baseline, true>("baseline", nullptr);
+#ifdef SUNBEAM_AVX2_KERNELS
+constexpr Kernels kLayeredAvx2 = kernels_for<Avx2, true>("avx2", nullptr);
+#endif
 
 }  // namespace
 
-const Kernels kBaselineKernels = kernels_for<Baseline>("baseline");
+const Kernels kBaselineKernels = kernels_for<Baseline, false>("baseline", &kLayeredBaseline);
 #ifdef SUNBEAM_AVX2_KERNELS
-const Kernels kAvx2Kernels = kernels_for<Avx2>("avx2");
+const Kernels kAvx2Kernels = kernels_for<Avx2, false>("avx2", &kLayeredAvx2);
 #endif
 
 void film_powers(const Kernels& kernels, const FilmSide& film, const FilmPhases& phases, Side side,

@@ -23,6 +23,8 @@ struct Kernels {
   void (*reflectances)(const FilmSide& film, const FilmPhases& phases, double cosine, double* r);
   // Does power[j] *= exp(-tau[j] length), j < count; reads kMostWavelengths of tau.
   void (*attenuate)(const double* tau, double length, int count, double* power);
+
+  const Kernels* layered;  // those of layered films; walks under single clear ones are compiled without them
 };
 
 // Writes the powers at one cosine and all wavelengths, for light on this side of the film. `reverse` is left

@@ -45,12 +45,12 @@ struct Arrival {
 };
 
 // Makes the steps of a walk between two visits of the base, on either side of a path.
-template <class V>
+template <class V, bool kLayered>
 class Steps {
  public:
   SUNBEAM_INLINE explicit Steps(const Layers& layers) : layers_(layers), events_(layers) {}
 
-  const Events<V>& events() const { return events_; }
+  const Events<V, kLayered>& events() const { return events_; }
 
   // Takes light through the film from outside along w, and returns that crossing.
   SUNBEAM_INLINE Crossing<V> enter(const V& w, Rng& rng, Arrival<V>& arrival) const {
@@ -98,10 +98,10 @@ class Steps {
 
  private:
   const Layers& layers_;
-  Events<V> events_;
+  Events<V, kLayered> events_;
 };
 
-template <class V>
+template <class V, bool kLayered = false>
 class UnidirectionalWalk {
  public:
   SUNBEAM_INLINE explicit UnidirectionalWalk(const Layers& layers) : steps_(layers), layers_(layers) {}
@@ -176,7 +176,7 @@ class UnidirectionalWalk {
       exit.throughput[j] *= V(layers_.albedo[j] * kInvPi * layers_.radiance_scale);
   }
 
-  Steps<V> steps_;
+  Steps<V, kLayered> steps_;
   const Layers& layers_;
 };
 

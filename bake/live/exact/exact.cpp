@@ -1,15 +1,17 @@
 #include "bake/live/exact/exact.h"
 
+#include <algorithm>
+
 #include "bake/live/exact/resolvent.h"
 
 namespace sunbeam {
 
-ExactTriple::ExactTriple(const Material& material, const Rgb& wavelengths_nm, const Rgb& albedo,
-                         const Rgb& absorption, const ExactResolution& resolution)
+ExactTriple::ExactTriple(const Material& material, const Wavelengths& three,
+                         const ExactResolution& resolution)
     : material_(material),
-      base_albedo_(albedo),
-      absorption_(absorption),
-      film_(material, wavelengths_nm, resolution) {
+      base_albedo_(three.triple(three.albedo, 0)),
+      absorption_(three.triple(three.absorption, 0)),
+      film_(material, three, resolution) {
   const auto reflection = film_.reflection();
   const auto exit = film_.exit(reflection);
   if (material.absorption_path == AbsorptionPath::sum)
@@ -135,13 +137,10 @@ Rgb ExactTriple::rest_albedo(const std::vector<CrossingNode>& crossings) const {
 ExactRest::ExactRest(const Material& material, const Wavelengths& wavelengths,
                      const ExactResolution& resolution)
     : wavelengths_(wavelengths) {
-  for (std::size_t first = 0; first < wavelengths.size(); first += 3) {
-    const auto of = [&](const std::vector<double>& values) { return wavelengths.triple(values, first); };
-    triples_.emplace_back(material, of(wavelengths.nm), of(wavelengths.albedo), of(wavelengths.absorption),
-                          resolution);
-  }
-  const auto shortest = std::min_element(wavelengths.nm.begin(), wavelengths.nm.end());
-  finest_ = static_cast<std::size_t>(shortest - wavelengths.nm.begin()) / 3;
+  for (std::size_t first = 0; first < wavelengths.size(); first += 3)
+    triples_.emplace_back(material, three_wavelengths(wavelengths, first), resolution);
+  const auto finest = std::ranges::max_element(triples_, {}, &ExactTriple::visible_nodes);
+  finest_ = static_cast<std::size_t>(finest - triples_.begin());
 }
 
 template <class F>
@@ -185,6 +184,10 @@ Rgb ExactRest::rest_albedo(const Vec3& w) const {
   if (w.z <= 0) return {};
   const auto in = crossings(w);
   return fold([&](const ExactTriple& triple) { return triple.rest_albedo(in); });
+}
+
+std::vector<double> ExactRest::facet_reflectance(double cosine) const {
+  return each([&](const ExactTriple& triple) { return triple.facet_reflectance(cosine); });
 }
 
 std::vector<double> ExactRest::arriving(const Vec3& w) const {

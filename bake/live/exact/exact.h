@@ -30,11 +30,12 @@ namespace sunbeam {
 // Solves the equations above for three wavelengths side by side, one value each. ExactRest is made of it.
 class ExactTriple {
  public:
-  // `albedo` of the base and `absorption` relative to the material's stand in for the material's own.
-  ExactTriple(const Material& material, const Rgb& wavelengths_nm, const Rgb& albedo, const Rgb& absorption,
-              const ExactResolution& resolution);
+  // Takes three wavelengths. Their albedo stands in for that of the material, and their absorption scales its
+  // own.
+  ExactTriple(const Material& material, const Wavelengths& three, const ExactResolution& resolution);
 
-  // Returns the ways to the base, which are the same for all triples of no shorter wavelengths.
+  // Returns the ways to the base, which also serve triples that ask for fewer visible_nodes().
+  int visible_nodes() const { return film_.visible_nodes(); }
   std::vector<CrossingNode> crossings(const Vec3& w) const { return film_.crossings(w); }
 
   // Holds what rest() needs of a direction with w.z > 0. Making it is what takes the time.
@@ -46,6 +47,7 @@ class ExactTriple {
   Side side(const std::vector<CrossingNode>& crossings) const;
   Rgb rest(const Side& wo, const Side& wi) const;
   Rgb first_albedo(const Vec3& w) const { return film_.first_albedo(w); }
+  Rgb facet_reflectance(double cosine) const { return film_.facet_reflectance(cosine); }
   Rgb rest_albedo(const std::vector<CrossingNode>& crossings) const;
 
   // Path "sum" alone has these: rest = gain() A(wo) A(wi) with A = arriving().
@@ -96,6 +98,10 @@ class ExactRest {
   Rgb albedo(const Vec3& w) const;
   Rgb rest_albedo(const Vec3& w) const;
 
+  // Returns the reflectance of a facet that light meets at this cosine from outside, a value for each
+  // wavelength.
+  std::vector<double> facet_reflectance(double cosine) const;
+
   // Path "sum" alone has these, a value for each wavelength: rest = fold(gain_k A_k(wo) A_k(wi)). A =
   // arriving(w) is the share of the power along w that reaches the base; w.z > 0.
   std::vector<double> arriving(const Vec3& w) const;
@@ -110,7 +116,7 @@ class ExactRest {
 
   Wavelengths wavelengths_;
   std::vector<ExactTriple> triples_;  // the last one filled up with its last wavelength
-  std::size_t finest_;                // of them has the shortest wavelength
+  std::size_t finest_;                // of them asks for most nodes
 };
 
 }  // namespace sunbeam

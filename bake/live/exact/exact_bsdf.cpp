@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "bake/live/film/visible_normals.h"
 #include "bake/optics/compiler.h"
 #include "sunbeam/detail/bracket.h"
 
@@ -12,6 +13,9 @@ namespace {
 constexpr PanelCurve::Accuracy kReflectanceAccuracy{1e-6, 1e-8, 1e-9};
 constexpr PanelCurve::Accuracy kSmoothAccuracy{1e-6, 1e-16, 1e-9};
 constexpr PanelCurve::Accuracy kRoughAccuracy{2e-6, 1e-15, 1.0 / 32768};
+// Powers of layered films come from curves themselves, whose steps of 1e-8 are not to be resolved.
+constexpr PanelCurve::Accuracy kLayeredAccuracy{1e-6, 1e-7, 1e-7};
+constexpr PanelCurve::Accuracy kLayeredRoughAccuracy{1e-5, 1e-7, 1.0 / 4096};
 
 constexpr std::size_t kChanceNodes = 65;
 constexpr std::size_t kMarginalBins = 128;
@@ -21,16 +25,18 @@ constexpr double kSmallestCosine = 1e-4;  // the chance at grazing is taken here
 }  // namespace
 
 ExactBsdf::ExactBsdf(const Material& material, const Wavelengths& wavelengths)
-    : film_(ThinFilm::of(material)),
+    : film_(outline(material, wavelengths)),
+      layered_(is_layered(material, wavelengths)),
       smooth_(material.is_smooth()),
-      rarer_base_(material.base_ior < material.exterior_ior),
+      rarer_base_(film_.base_ior < film_.exterior_ior),
+      critical_(critical_cosine(film_)),
       ggx_(material.roughness) {
   const ExactRest exact(material, wavelengths);
   const auto gain = exact.gain();
   for (std::size_t k = 0; k < gain.size(); ++k) weight_.push_back(gain[k] * wavelengths.weight[k]);
   for (int c = 0; c < 3; ++c)
     for (std::size_t k = 0; k < gain.size(); ++k) fold_[c][k] = weight_[k][c];
-  tabulate_reflectance(wavelengths);
+  tabulate_reflectance(exact);
   tabulate_arriving(exact);
   prepare_sampling();
 }
@@ -47,40 +53,41 @@ double ExactBsdf::cosine_at(double coordinate) const {
   return std::sqrt(refracted_cosine_squared(film_.base_ior, film_.exterior_ior, coordinate));
 }
 
-void ExactBsdf::tabulate_reflectance(const Wavelengths& wavelengths) {
-  std::vector<double> values;
-  const auto folded = [&](double x, std::span<double> rgb) {
-    values.clear();
-    for (std::size_t first = 0; first < wavelengths.size(); first += 3) {
-      const Rgb power = airy(film_, cosine_at(x), wavelengths.triple(wavelengths.nm, first)).reflectance;
-      values.insert(values.end(), {power.r, power.g, power.b});
-    }
-    values.resize(wavelengths.size());
-    const Rgb sum = wavelengths.fold(values);
+void ExactBsdf::tabulate_reflectance(const ExactRest& exact) {
+  const auto folded = [&](double cosine, std::span<double> rgb) {
+    const Rgb sum = exact.wavelengths().fold(exact.facet_reflectance(cosine));
     for (int c = 0; c < 3; ++c) rgb[c] = sum[c];
   };
-  reflectance_ = PanelCurve(3, folded, kReflectanceAccuracy);
+  reflectance_ = PanelCurve(
+      3, [&](double x, std::span<double> rgb) { folded(cosine_at(x), rgb); },
+      layered_ ? kLayeredAccuracy : kReflectanceAccuracy);
+  if (!layered_ || critical_ == 0) return;
+  total_ = PanelCurve(
+      3, [&](double x, std::span<double> rgb) { folded(x * critical_, rgb); }, kLayeredAccuracy);
 }
 
 void ExactBsdf::tabulate_arriving(const ExactRest& exact) {
   const auto at = [&](double x, std::span<double> values) {
     const auto power = exact.arriving(direction_from_cosine(smooth_ ? cosine_at(x) : x, 0));
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] = smooth_ ? power[k] / x : power[k];
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = is_divided() ? power[k] / x : power[k];
   };
   if (smooth_) {
-    arriving_ = PanelCurve(weight_.size(), at, kSmoothAccuracy);
+    arriving_ = PanelCurve(weight_.size(), at, layered_ ? kLayeredAccuracy : kSmoothAccuracy);
     return;
   }
   // Where a smooth film would begin to pass light a rough one still does so within its roughness.
   std::vector<double> edges;
   for (const double ior : {film_.film_ior, film_.base_ior})
     if (ior < film_.exterior_ior) edges.push_back(std::sqrt(1 - square(ior / film_.exterior_ior)));
-  arriving_ = PanelCurve(weight_.size(), at, kRoughAccuracy, edges);
+  arriving_ = PanelCurve(weight_.size(), at, layered_ ? kLayeredRoughAccuracy : kRoughAccuracy, edges);
 }
 
 Rgb ExactBsdf::reflectance(double cosine) const {
   std::array<double, 4> rgb;
-  reflectance_.at(film_coordinate(cosine), rgb.data());
+  if (total_.panels() > 0 && cosine < critical_)
+    total_.at(cosine / critical_, rgb.data());
+  else
+    reflectance_.at(film_coordinate(cosine), rgb.data());
   return {rgb[0], rgb[1], rgb[2]};
 }
 
@@ -88,7 +95,8 @@ void ExactBsdf::arriving(double cosine, double* values) const {
   if (!smooth_) return arriving_.at(cosine, values);
   const double x = film_coordinate(cosine);
   arriving_.at(x, values);
-  for (std::size_t k = 0; k < arriving_.lanes(); ++k) values[k] *= x;
+  for (std::size_t k = 0; k < arriving_.lanes(); ++k)
+    values[k] = is_divided() ? values[k] * x : x > 0 ? std::max(0.0, values[k]) : 0;
 }
 
 // Means over the channels are what directions are chosen by.

@@ -18,7 +18,6 @@
 
 #include "bake/live/exact/exact.h"
 #include "bake/live/film/panel_curve.h"
-#include "bake/optics/thin_film.h"
 #include "sunbeam/bsdf.h"
 #include "sunbeam/detail/ggx.h"
 #include "sunbeam/detail/piecewise.h"
@@ -51,6 +50,7 @@ class ExactBsdf final : public Bsdf {
   Rgb dirac(const Vec3& wo) const { return smooth_ && wo.z > 0 ? reflectance(wo.z) : Rgb(); }
 
  private:
+  bool is_divided() const { return smooth_ && !layered_; }
   double film_coordinate(double cosine) const;
   double cosine_at(double coordinate) const;
   Rgb reflectance(double cosine) const;
@@ -58,18 +58,21 @@ class ExactBsdf final : public Bsdf {
   Rgb first_at(const Vec3& wo, const Vec3& wi, const Vec3& h) const;  // h: between wo and wi; rough only
   double density_at(const Vec3& wo, const Vec3& wi, const Vec3& h) const;
   Rgb fold(const double* a, const double* b) const;
-  void tabulate_reflectance(const Wavelengths& wavelengths);
+  void tabulate_reflectance(const ExactRest& exact);
   void tabulate_arriving(const ExactRest& exact);
   void prepare_sampling();
   double first_albedo(const Vec3& wo) const;
   double first_chance(double cosine) const;
   double rest_pdf(double cosine) const { return rest_marginal_.pdf(square(cosine)) * cosine * kInvPi; }
 
-  ThinFilm film_;
-  bool smooth_, rarer_base_;
+  ThinFilm film_;  // its outline
+  bool layered_, smooth_, rarer_base_;
+  double critical_;  // cosine of total reflection outside
   Ggx ggx_;
-  PanelCurve reflectance_;   // R over film_coordinate()
-  PanelCurve arriving_;      // A_k over the cosine; smooth: A_k / x over x = film_coordinate()
+  PanelCurve reflectance_;  // R over film_coordinate()
+  PanelCurve total_;        // R of total reflection over cosine / critical_; no panels if R = 1
+  PanelCurve
+      arriving_;  // A_k over the cosine; smooth: A_k over x = film_coordinate(), divided by x if one layer
   std::vector<Rgb> weight_;  // gain_k times the weight of folding
   std::array<std::array<double, kMostWavelengths>, 3> fold_{};
   std::vector<double> chance_;       // of sampling the first surface, over even cosines

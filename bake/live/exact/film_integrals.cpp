@@ -11,13 +11,18 @@ namespace {
 // still has more than two nodes a period.
 constexpr int kFineNodes = 20;
 constexpr double kPhaseStep = 5;
+// The same between two edges of a layered film.
+constexpr int kFilmPanelNodes = 16;
 // Extra nodes a radian of phase for normals visible from one direction, and where they end (time, not error).
 constexpr double kVisibleNodesPerRadian = 0.3;
+// A panel of a layered film counts as this.
+constexpr double kRadiansOfFilmPanel = 1;
 constexpr int kMaxVisibleNodes = 400;
 
 // A panel's variable t in [0, 1]: flat ends turn square-root singularities there into smooth functions.
 double smooth_step(double t) { return t * t * (3 - 2 * t); }
 double smooth_step_slope(double t) { return 6 * t * (1 - t); }
+double inverse_smooth_step(double x) { return 0.5 - std::sin(std::asin(1 - 2 * x) / 3); }
 
 // Calls visit(x, dx) for the nodes of every panel between neighbouring edges.
 template <class F>
@@ -35,38 +40,63 @@ double min_component(const Rgb& a) { return std::min({a.r, a.g, a.b}); }
 
 }  // namespace
 
-FilmIntegrals::FilmIntegrals(const Material& material, const Rgb& wavelengths_nm,
+FilmIntegrals::FilmIntegrals(const Material& material, const Wavelengths& three,
                              const ExactResolution& resolution)
     : material_(material),
       resolution_(resolution),
       geometry_(material),
-      film_(ThinFilm::of(material)),
-      film_below_(ThinFilm::below(material)),
-      wavelengths_nm_(wavelengths_nm),
+      film_(material, three),
       index_ratio_(geometry_.has_glossy_crossing() ? material.exterior_ior / material.base_ior : 1),
       basis_(resolution.per_panel),
       cosine_panel_(resolution.cosines),
       fine_(gauss_legendre(kFineNodes)),
+      film_panel_(gauss_legendre(kFilmPanelNodes)),
       normals_(gauss_legendre(resolution.normals)),
       azimuths_(gauss_legendre(resolution.azimuths)),
-      visible_(gauss_legendre(visible_nodes())),
-      visible_azimuths_(gauss_legendre(visible_nodes() * 3 / 4)),
+      visible_(gauss_legendre(wanted_visible_nodes())),
+      visible_azimuths_(gauss_legendre(visible_.size() * 3 / 4)),
       turns_(material.roughness) {}
 
 // Phase difference of neighbouring reflections, radians, at the shortest wavelength.
-double FilmIntegrals::phase(const ThinFilm& film, double cosine) const {
+double FilmIntegrals::phase(walk::Side side, double cosine) const {
+  const ThinFilm& film = film_.outline_from(side);
   const double cos1_squared = refracted_cosine_squared(film.exterior_ior, film.film_ior, cosine);
-  return 4 * kPi * film.film_ior * film.thickness_nm / min_component(wavelengths_nm_) *
+  return 4 * kPi * film.film_ior * film.thickness_nm / min_component(film_.wavelengths_nm()) *
          std::sqrt(std::max(0.0, cos1_squared));
 }
 
-int FilmIntegrals::oscillation_panels(const ThinFilm& film, double low, double high) const {
-  return 1 + static_cast<int>((phase(film, high) - phase(film, low)) / kPhaseStep);
+int FilmIntegrals::oscillation_panels(walk::Side side, double low, double high) const {
+  return 1 + static_cast<int>((phase(side, high) - phase(side, low)) / kPhaseStep);
+}
+
+// Calls visit(t, weight, parts) for nodes t, of weight / parts, of low + (high - low) smooth_step(t) that
+// resolve the film's powers.
+template <class F>
+void FilmIntegrals::visit_oscillations(walk::Side side, double low, double high, F visit) const {
+  if (!film_.is_layered()) {
+    const int parts = oscillation_panels(side, low, high);
+    for (int part = 0; part < parts; ++part)
+      for (int i = 0; i < fine_.size(); ++i) visit((part + fine_.node[i]) / parts, fine_.weight[i], parts);
+    return;
+  }
+  double from = 0;
+  for (const double edge : film_.edges(side)) {
+    if (edge <= low) continue;
+    const double to = edge < high ? inverse_smooth_step((edge - low) / (high - low)) : 1;
+    for (int i = 0; i < film_panel_.size(); ++i)
+      visit(lerp(film_panel_.node[i], from, to), film_panel_.weight[i] * (to - from), 1);
+    if (edge >= high) return;
+    from = to;
+  }
 }
 
 // More where a wide lobe sees a thick film oscillate.
-int FilmIntegrals::visible_nodes() const {
-  const double waves = (phase(film_, 1) - phase(film_, 0)) * std::min(1.0, 4 * wider());
+int FilmIntegrals::wanted_visible_nodes() const {
+  const walk::Side outside = walk::Side::outside;
+  const double radians = film_.is_layered()
+                             ? kRadiansOfFilmPanel * static_cast<double>(film_.edges(outside).size() - 1)
+                             : phase(outside, 1) - phase(outside, 0);
+  const double waves = radians * std::min(1.0, 4 * wider());
   const int wanted = resolution_.visible + static_cast<int>(kVisibleNodesPerRadian * waves);
   return std::min(wanted, std::max(kMaxVisibleNodes, resolution_.visible));
 }
@@ -77,7 +107,8 @@ int FilmIntegrals::visible_nodes() const {
 template <class F>
 void FilmIntegrals::visit_visible(const Vec3& w, bool only_mirrored, F visit) const {
   const Vec3 from = material_.roughness.is_isotropic() ? direction_from_cosine(w.z, 0) : w;
-  const VisibleNormals visible(from, material_.roughness, film_, index_ratio_);
+  const VisibleNormals visible(from, material_.roughness, film_.outline_from(walk::Side::outside),
+                               index_ratio_);
   for_each_node(visible.azimuth_edges(), visible_azimuths_, [&](double azimuth, double dazimuth) {
     auto edges = visible.polar_edges(azimuth);
     const double end = only_mirrored ? visible.mirrored_end(azimuth, edges.back()) : edges.back();
@@ -95,7 +126,7 @@ std::vector<CrossingNode> FilmIntegrals::crossings(const Vec3& w) const {
     if (const auto inside = geometry_.cross(from, normal))
       result.push_back({cosine, inside->direction.z, weight * inside->share});
   };
-  if (w.z <= 0) return result;
+  if (w.z <= 0 || material_.is_opaque()) return result;
   if (geometry_.is_smooth())
     add(w, {0, 0, 1}, 1);
   else
@@ -118,19 +149,15 @@ Rgb FilmIntegrals::first_albedo(const Vec3& w) const {
 // smooth_step(t_j): the film's oscillations are integrated here, and what multiplies them only has to be
 // smooth.
 std::vector<Rgb> FilmIntegrals::moments(Event event, double low, double high) const {
-  const ThinFilm& film = film_of(event);
   std::vector<Rgb> result(cosine_panel_.size());
-  const int parts = oscillation_panels(film, low, high);
-  for (int part = 0; part < parts; ++part)
-    for (int i = 0; i < fine_.size(); ++i) {
-      const double t = (part + fine_.node[i]) / parts;
-      const double cosine = lerp(smooth_step(t), low, high);
-      const FilmPower power = airy(film, cosine, wavelengths_nm_);
-      const Rgb value = (event == Event::crossing ? power.transmittance : power.reflectance) *
-                        (cosine * (high - low) * smooth_step_slope(t) * fine_.weight[i] / parts);
-      const auto weights = cosine_panel_.at(t);
-      for (int j = 0; j < cosine_panel_.size(); ++j) result[j] += value * weights[j];
-    }
+  visit_oscillations(side_of(event), low, high, [&](double t, double weight, int parts) {
+    const double cosine = lerp(smooth_step(t), low, high);
+    const FilmPower power = film_.at(side_of(event), cosine);
+    const Rgb value = (event == Event::crossing ? power.transmittance : power.reflectance) *
+                      (cosine * (high - low) * smooth_step_slope(t) * weight / parts);
+    const auto weights = cosine_panel_.at(t);
+    for (int j = 0; j < cosine_panel_.size(); ++j) result[j] += value * weights[j];
+  });
   return result;
 }
 
@@ -176,7 +203,7 @@ void FilmIntegrals::visit_azimuths(Event event, double theta, const std::vector<
 // and its kink at total reflection, on one axis. tan(theta_h) = alpha x / (1 - x), alpha between the two.
 template <class F>
 void FilmIntegrals::visit_facets(Event event, F visit) const {
-  const double critical = critical_cosine(film_of(event));
+  const double critical = critical_cosine(film_.outline_from(side_of(event)));
   const double alpha = std::sqrt(material_.roughness.u * material_.roughness.v);
   for (int i = 0; i < normals_.size(); ++i) {
     const double x = normals_.node[i];
@@ -199,33 +226,40 @@ void FilmIntegrals::visit_facets(Event event, F visit) const {
   }
 }
 
-// One interval inside a panel of the basis: Int L_k L_l R(mu) 2 pi mu dmu.
-void FilmIntegrals::add_smooth_reflection(double low, double high, std::array<Matrix, 3>& sum) const {
-  const int parts = oscillation_panels(film_below_, low, high), count = basis_.per_panel();
-  for (int part = 0; part < parts; ++part)
-    for (int i = 0; i < fine_.size(); ++i) {
-      const double t = (part + fine_.node[i]) / parts;
+// Int ... 2 pi mu dmu over the cosines below a smooth film: calls visit(mu, powers, 2 pi mu dmu).
+template <class F>
+void FilmIntegrals::visit_smooth_film(F visit) const {
+  const walk::Side inside = walk::Side::inside;
+  const double critical = critical_cosine(film_.outline_from(inside));
+  const auto visit_between = [&](double low, double high) {
+    if (high <= low) return;
+    visit_oscillations(inside, low, high, [&](double t, double weight, int parts) {
       const double mu = lerp(smooth_step(t), low, high);
-      const double dmu = (high - low) * smooth_step_slope(t) * fine_.weight[i] / parts;
-      const Rgb weight = airy(film_below_, mu, wavelengths_nm_).reflectance * (2 * kPi * mu * dmu);
+      const double dmu = (high - low) * smooth_step_slope(t) * weight / parts;
+      visit(mu, film_.at(inside, mu), 2 * kPi * mu * dmu);
+    });
+  };
+  for (int p = 0; p < CosineBasis::kPanels; ++p) {
+    const double low = CosineBasis::kEdges[p], high = CosineBasis::kEdges[p + 1];
+    const double split = std::clamp(critical, low, high);
+    visit_between(low, split);
+    visit_between(split, high);
+  }
+}
+
+std::array<Matrix, 3> FilmIntegrals::reflection() const {
+  std::array<Matrix, 3> sum{Matrix(basis_.size()), Matrix(basis_.size()), Matrix(basis_.size())};
+  if (material_.is_opaque()) return sum;
+  if (geometry_.is_smooth()) {
+    const int count = basis_.per_panel();
+    visit_smooth_film([&](double mu, const FilmPower& power, double share) {
+      const Rgb weight = power.reflectance * share;
       const auto s = basis_.at(mu);
       for (int channel = 0; channel < 3; ++channel)
         for (int k = 0; k < count; ++k)
           add_scaled(weight[channel] * s.weight[k], s.weight.data(), count,
                      sum[channel].row(s.first + k) + s.first);
-    }
-}
-
-std::array<Matrix, 3> FilmIntegrals::reflection() const {
-  std::array<Matrix, 3> sum{Matrix(basis_.size()), Matrix(basis_.size()), Matrix(basis_.size())};
-  if (geometry_.is_smooth()) {
-    const double critical = critical_cosine(film_below_);
-    for (int p = 0; p < CosineBasis::kPanels; ++p) {
-      const double low = CosineBasis::kEdges[p], high = CosineBasis::kEdges[p + 1];
-      const double split = std::clamp(critical, low, high);
-      if (split > low) add_smooth_reflection(low, split, sum);
-      if (split < high) add_smooth_reflection(split, high, sum);
-    }
+    });
   } else {
     visit_facets(Event::reflection_below, [&](const Meeting& m) {
       const auto up = basis_.at(m.cosine), down = basis_.at(m.partner);
@@ -241,7 +275,7 @@ std::array<Matrix, 3> FilmIntegrals::reflection() const {
 
 std::array<Vector, 3> FilmIntegrals::exit(const std::array<Matrix, 3>& reflection) const {
   std::array<Vector, 3> sum;
-  if (geometry_.is_smooth()) {  // what is not reflected leaves
+  if (geometry_.is_smooth() && !film_.is_layered()) {  // what is not reflected leaves
     for (int channel = 0; channel < 3; ++channel) {
       sum[channel] = multiply(Vector(basis_.size(), -1.0), reflection[channel]);
       add_scaled(1, basis_.cosine_weights().data(), basis_.size(), sum[channel].data());
@@ -249,6 +283,16 @@ std::array<Vector, 3> FilmIntegrals::exit(const std::array<Matrix, 3>& reflectio
     return sum;
   }
   sum.fill(Vector(basis_.size()));
+  if (material_.is_opaque()) return sum;
+  if (geometry_.is_smooth()) {
+    visit_smooth_film([&](double mu, const FilmPower& power, double share) {
+      const auto s = basis_.at(mu);
+      for (int channel = 0; channel < 3; ++channel)
+        add_scaled(power.transmittance[channel] * share, s.weight.data(), basis_.per_panel(),
+                   sum[channel].data() + s.first);
+    });
+    return sum;
+  }
   visit_facets(Event::crossing, [&](const Meeting& m) {
     const auto inside = basis_.at(m.partner);
     for (int channel = 0; channel < 3; ++channel)

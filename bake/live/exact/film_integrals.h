@@ -11,9 +11,9 @@
 
 #include "bake/live/exact/cosine_basis.h"
 #include "bake/live/exact/dense.h"
+#include "bake/live/exact/film_sides.h"
 #include "bake/live/film/facet_turns.h"
 #include "bake/live/film/geometry.h"
-#include "bake/optics/thin_film.h"
 
 namespace sunbeam {
 
@@ -35,17 +35,22 @@ struct CrossingNode {
 
 class FilmIntegrals {
  public:
-  FilmIntegrals(const Material& material, const Rgb& wavelengths_nm, const ExactResolution& resolution);
+  // Takes three wavelengths.
+  FilmIntegrals(const Material& material, const Wavelengths& three, const ExactResolution& resolution);
 
   const CosineBasis& basis() const { return basis_; }
   // False if facets bend light, so that crossings() is a quadrature over many cosines.
   bool has_single_crossing() const { return !geometry_.has_glossy_crossing(); }
 
-  // Returns the ways of light along w, for all wavelengths not shorter than those of this object; there are
-  // none under total reflection. p_t(w -> m) dm is share times transmittance() at m.z = cosine.
+  // Returns how many nodes crossings() takes each way: what they resolve depends on the wavelengths.
+  int visible_nodes() const { return visible_.size(); }
+  // Returns the ways of light along w, also for wavelengths that ask for fewer visible_nodes(); there are
+  // none under total reflection or over an opaque base. p_t(w -> m) dm is share times transmittance() at m.z
+  // = cosine.
   std::vector<CrossingNode> crossings(const Vec3& w) const;
   Rgb transmittance(const CrossingNode& crossing) const { return power(crossing.facet_cosine).transmittance; }
 
+  Rgb facet_reflectance(double facet_cosine) const { return power(facet_cosine).reflectance; }
   // Returns the directional albedo of the first surface, a smooth film's Dirac included.
   Rgb first_albedo(const Vec3& w) const;
 
@@ -65,14 +70,19 @@ class FilmIntegrals {
   };
   enum class Event { reflection_below, crossing };
 
+  static walk::Side side_of(Event event) {
+    return event == Event::crossing ? walk::Side::outside : walk::Side::inside;
+  }
   // Returns the film's powers for light from outside.
-  FilmPower power(double facet_cosine) const { return airy(film_, facet_cosine, wavelengths_nm_); }
-  const ThinFilm& film_of(Event event) const { return event == Event::crossing ? film_ : film_below_; }
-  double phase(const ThinFilm& film, double cosine) const;
-  int visible_nodes() const;
-  int oscillation_panels(const ThinFilm& film, double low, double high) const;
+  FilmPower power(double facet_cosine) const { return film_.at(walk::Side::outside, facet_cosine); }
+  double phase(walk::Side side, double cosine) const;
+  int wanted_visible_nodes() const;
+  int oscillation_panels(walk::Side side, double low, double high) const;
+  template <class F>
+  void visit_oscillations(walk::Side side, double low, double high, F visit) const;
+  template <class F>
+  void visit_smooth_film(F visit) const;
   std::vector<Rgb> moments(Event event, double low, double high) const;
-  void add_smooth_reflection(double low, double high, std::array<Matrix, 3>& sum) const;
   template <class F>
   void visit_visible(const Vec3& w, bool only_mirrored, F visit) const;
   template <class F>
@@ -87,12 +97,11 @@ class FilmIntegrals {
   Material material_;
   ExactResolution resolution_;
   FilmGeometry geometry_;
-  ThinFilm film_, film_below_;
-  Rgb wavelengths_nm_;
+  FilmSides film_;
   double index_ratio_;  // n0 / n2 if facets bend light, else 1
   CosineBasis basis_;
   GaussInterpolation cosine_panel_;
-  GaussRule fine_, normals_, azimuths_, visible_, visible_azimuths_;
+  GaussRule fine_, film_panel_, normals_, azimuths_, visible_, visible_azimuths_;
   FacetTurns turns_;
 };
 

@@ -47,12 +47,28 @@ FilmCurves::FilmCurves(const Material& material, const Wavelengths& wavelengths)
   total_ = PanelCurve(count_, tabulate_total, kAccuracy);
 }
 
+// In "straight" mode light is below as it is outside.
+bool FilmCurves::is_in_rarer(walk::Side side) const {
+  const bool is_below = side == walk::Side::inside && !straight_;
+  return critical_ == 0 || is_below == is_base_rarer();
+}
+
+std::vector<double> FilmCurves::edges(walk::Side side) const {
+  std::vector<double> cosines{0};
+  const bool is_rarer = is_in_rarer(side);
+  for (std::size_t p = 0; p < total_.panels() && !is_rarer; ++p) cosines.push_back(critical_ * total_.end(p));
+  if (!is_rarer && total_.panels() == 0) cosines.push_back(critical_);
+  for (std::size_t p = 0; p < passing_.panels(); ++p) {
+    const double x = passing_.end(p);
+    cosines.push_back(is_rarer ? x : std::sqrt(refracted_cosine_squared(rarer_ior(), denser_ior(), x)));
+  }
+  return cosines;
+}
+
 void FilmCurves::at(walk::Side side, double cosine, std::span<const int> wavelengths,
                     FilmPowers& powers) const {
-  const bool is_below = side == walk::Side::inside && !straight_;
-  const bool is_in_rarer = critical_ == 0 || is_below == is_base_rarer();
   double coordinate = cosine;
-  if (!is_in_rarer) {
+  if (!is_in_rarer(side)) {
     const double squared = refracted_cosine_squared(denser_ior(), rarer_ior(), cosine);
     if (squared <= 0) {
       for (std::size_t i = 0; i < wavelengths.size(); ++i) {

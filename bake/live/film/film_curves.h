@@ -13,6 +13,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "bake/live/film/microsurface.h"
 #include "bake/live/film/panel_curve.h"
@@ -42,7 +43,12 @@ class FilmCurves {
   void at(const double* is_inside, std::span<const double> cosine, std::span<const int> wavelengths,
           double* reflectance, double* transmittance) const;
 
+  // Returns the cosines on this side, from 0 to 1, between which the powers are as good as polynomials: of
+  // the cosine, or of its refraction.
+  std::vector<double> edges(walk::Side side) const;
+
  private:
+  bool is_in_rarer(walk::Side side) const;
   bool is_base_rarer() const { return base_ior_ < exterior_ior_; }
   double denser_ior() const { return is_base_rarer() ? exterior_ior_ : base_ior_; }
   double rarer_ior() const { return is_base_rarer() ? base_ior_ : exterior_ior_; }

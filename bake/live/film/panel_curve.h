@@ -37,6 +37,8 @@ class PanelCurve {
 
   std::size_t count() const { return count_; }
   std::size_t panels() const { return panels_.size(); }
+  // Returns where the panel of this number ends; panels ascend.
+  double end(std::size_t panel) const { return panels_[panel].end; }
 
   // Returns how many numbers at() writes: count(), filled up to a multiple of four unless it is 1.
   std::size_t lanes() const { return lanes_; }

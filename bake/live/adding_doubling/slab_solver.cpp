@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "bake/live/exact/resolvent.h"
 #include "bake/optics/compiler.h"
@@ -289,29 +290,34 @@ std::vector<double> SlabSolver::transmittances(std::span<const double> orders, s
 }
 
 // By (mode, row, node, order).
-std::vector<double> SlabSolver::moments(const std::vector<FacetList>& rows, const walk::FilmSide& film,
-                                        bool lets_through, std::span<const double> orders) const {
-  const walk::FilmPhases phases = phases_at(orders);
+std::vector<double> SlabSolver::moments(const std::vector<FacetList>& rows, walk::Side side, Part part,
+                                        const walk::FilmPhases& phases) const {
   const walk::Kernels& kernels = walk::best_kernels();
-  const std::size_t row_size = nodes_.cosine.size() * orders.size(), mode_size = rows.size() * row_size;
+  const walk::FilmSide& film = side == walk::Side::outside ? film_ : film_below_;
+  const std::size_t row_size = nodes_.cosine.size() * phases.count, mode_size = rows.size() * row_size;
   std::vector<double> moments(modes_ * mode_size);
-  std::array<double, kMostWavelengths> power;
+  FilmPowers powers;
+  auto& power = part == Part::reflectance ? powers.reflectance : powers.transmittance;
   for (std::size_t row = 0; row < rows.size(); ++row)
     for (const Facet& facet : rows[row]) {
-      kernels.reflectances(film, phases, facet.cosine, power.data());
-      for (int j = 0; j < phases.count; ++j)
-        power[j] = facet.share * (lets_through ? 1 - power[j] : power[j]);
+      walk::film_powers(kernels, film, phases, side, facet.cosine, powers);
+      for (int j = 0; j < phases.count; ++j) power[j] *= facet.share;
       add_facet(facet.even.data(), facet.odd.data(), Nodes::kStencil, facet.azimuth, modes_, power.data(),
-                phases.count, &moments[row * row_size + facet.first_node * orders.size()], mode_size);
+                phases.count, &moments[row * row_size + facet.first_node * phases.count], mode_size);
     }
   return moments;
 }
 
-SlabSolver::Fringes::Fringes(const SlabSolver& solver, std::span<const double> orders) : solver_(solver) {
-  const std::vector<double> entry = solver.moments(solver.entry_, solver.film_, true, orders);
-  const std::vector<double> back = solver.moments(solver.thrown_back_, solver.film_below_, false, orders);
+SlabSolver::Fringes::Fringes(const SlabSolver& solver, std::span<const double> orders)
+    : Fringes(solver, phases_at(orders)) {}
+
+SlabSolver::Fringes::Fringes(const SlabSolver& solver, const walk::FilmPhases& phases) : solver_(solver) {
+  const std::vector<double> entry =
+      solver.moments(solver.entry_, walk::Side::outside, Part::transmittance, phases);
+  const std::vector<double> back =
+      solver.moments(solver.thrown_back_, walk::Side::inside, Part::reflectance, phases);
   const int n = solver.nodes_.size(), cosines = static_cast<int>(solver.cosines_.size());
-  modes_.resize(orders.size(), std::vector<Mode>(solver.modes_, {Matrix(cosines, n), Matrix(n)}));
+  modes_.resize(phases.count, std::vector<Mode>(solver.modes_, {Matrix(cosines, n), Matrix(n)}));
   const double *e = entry.data(), *f = back.data();
   for (int mode = 0; mode < solver.modes_; ++mode) {
     for (int c = 0; c < cosines; ++c)
@@ -362,9 +368,21 @@ SlabSolver::Response SlabSolver::Fringes::response(std::size_t order, double dep
   return response;
 }
 
+SlabSolver::Fringes SlabSolver::fringes(double film_thickness_nm, const Wavelengths& wavelengths) const {
+  Material material = material_;
+  material.film_thickness_nm = film_thickness_nm;
+  if (!is_layered(material, wavelengths))
+    return {*this, fringe_orders(material.film_ior, film_thickness_nm, wavelengths)};
+  const FilmCurves curves(material, wavelengths);
+  walk::FilmPhases phases;
+  phases.count = static_cast<int>(wavelengths.size());
+  phases.curves = &curves;
+  std::iota(phases.number.begin(), phases.number.end(), 0);
+  return {*this, phases};
+}
+
 SlabSolver::Film::Film(const SlabSolver& solver, double film_thickness_nm, const Wavelengths& wavelengths)
-    : wavelengths_(wavelengths),
-      fringes_(solver, fringe_orders(solver.material_.film_ior, film_thickness_nm, wavelengths)) {}
+    : wavelengths_(wavelengths), fringes_(solver.fringes(film_thickness_nm, wavelengths)) {}
 
 SlabSolver::Film::Modes SlabSolver::Film::rest(double optical_depth) const {
   Modes modes;

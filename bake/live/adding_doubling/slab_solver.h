@@ -74,13 +74,15 @@ class SlabSolver {
     }
   };
 
-  // Prepares the film at some fringe orders 2 n1 d / lambda, at most kMostWavelengths.
+  // Prepares the film at some fringe orders 2 n1 d / lambda, at most kMostWavelengths; or any film at the
+  // wavelengths of `phases`, of which nothing is kept.
   class Fringes {
    public:
     Fringes(const SlabSolver& solver, std::span<const double> orders);
+    Fringes(const SlabSolver& solver, const walk::FilmPhases& phases);
 
-    // Returns the response at the order of this number. It has the same bits whatever other orders there are.
-    // Throws Error if the depth has not been added.
+    // Returns the response at the order or wavelength of this number. At an order it has the same bits
+    // whatever other orders there are. Throws Error if the depth has not been added.
     Response response(std::size_t order, double depth) const;
 
    private:
@@ -94,7 +96,7 @@ class SlabSolver {
     std::vector<std::vector<Mode>> modes_;  // by (order, mode)
   };
 
-  // Prepares the film at one thickness and all wavelengths, for many depths.
+  // Prepares the film, a layered one too, at one thickness and all wavelengths, for many depths.
   class Film {
    public:
     Film(const SlabSolver& solver, double film_thickness_nm, const Wavelengths& wavelengths);
@@ -118,8 +120,8 @@ class SlabSolver {
     Fringes fringes_;
   };
 
-  // Returns the share of light along the cosine of this number that films of these fringe orders, at most
-  // kMostWavelengths, let in.
+  // Returns the share of light along the cosine of this number that single films of these fringe orders, at
+  // most kMostWavelengths, let in.
   std::vector<double> transmittances(std::span<const double> orders, std::size_t cosine) const;
 
   int modes() const { return modes_; }
@@ -162,8 +164,10 @@ class SlabSolver {
   FacetList facets_thrown_back(int from) const;
   Facet facet(double cosine, double share, const Vec3& on) const;
   int modes_above(double faintest) const;
-  std::vector<double> moments(const std::vector<FacetList>& rows, const walk::FilmSide& film,
-                              bool lets_through, std::span<const double> orders) const;
+  enum class Part { reflectance, transmittance };
+  std::vector<double> moments(const std::vector<FacetList>& rows, walk::Side side, Part part,
+                              const walk::FilmPhases& phases) const;
+  Fringes fringes(double film_thickness_nm, const Wavelengths& wavelengths) const;
   Phase phase(int mode) const;
   Layer make_layer(double depth) const;
   void double_up(int mode, double depth, Matrix& r, Matrix& t) const;

@@ -136,11 +136,11 @@ Rgb ExactTriple::rest_albedo(const std::vector<CrossingNode>& crossings) const {
 
 ExactRest::ExactRest(const Material& material, const Wavelengths& wavelengths,
                      const ExactResolution& resolution)
-    : wavelengths_(wavelengths) {
+    : wavelengths_(wavelengths), is_layered_(is_layered(material, wavelengths)) {
   for (std::size_t first = 0; first < wavelengths.size(); first += 3)
     triples_.emplace_back(material, three_wavelengths(wavelengths, first), resolution);
-  const auto finest = std::ranges::max_element(triples_, {}, &ExactTriple::visible_nodes);
-  finest_ = static_cast<std::size_t>(finest - triples_.begin());
+  const auto shortest = std::min_element(wavelengths.nm.begin(), wavelengths.nm.end());
+  finest_ = static_cast<std::size_t>(shortest - wavelengths.nm.begin()) / 3;
 }
 
 template <class F>
@@ -154,36 +154,44 @@ std::vector<double> ExactRest::each(F of_triple) const {
   return values;
 }
 
+// Calls of_triple(triple, crossings) with the crossings of w.
 template <class F>
-Rgb ExactRest::fold(F of_triple) const {
-  return wavelengths_.fold(each(of_triple));
+std::vector<double> ExactRest::each_crossed(const Vec3& w, F of_triple) const {
+  if (is_layered_)
+    return each([&](const ExactTriple& triple) { return of_triple(triple, triple.crossings(w)); });
+  const auto shared = triples_[finest_].crossings(w);
+  return each([&](const ExactTriple& triple) { return of_triple(triple, shared); });
 }
 
 std::vector<Rgb> ExactRest::rest(std::span<const Vec3> wo, const Vec3& wi) const {
   std::vector<Rgb> values(wo.size());
   if (wi.z <= 0) return values;
   std::vector<ExactTriple::Side> sides;
-  const auto in = crossings(wi);
-  for (const ExactTriple& triple : triples_) sides.push_back(triple.side(in));
+  each_crossed(wi, [&](const ExactTriple& triple, const auto& in) {
+    sides.push_back(triple.side(in));
+    return Rgb();
+  });
   for (std::size_t k = 0; k < wo.size(); ++k) {
     if (wo[k].z <= 0) continue;
-    const auto out = crossings(wo[k]);
     auto side = sides.begin();
-    values[k] = fold([&](const ExactTriple& triple) { return triple.rest(triple.side(out), *side++); });
+    values[k] = wavelengths_.fold(each_crossed(wo[k], [&](const ExactTriple& triple, const auto& out) {
+      return triple.rest(triple.side(out), *side++);
+    }));
   }
   return values;
 }
 
 Rgb ExactRest::albedo(const Vec3& w) const {
   if (w.z <= 0) return {};
-  const auto in = crossings(w);
-  return fold([&](const ExactTriple& triple) { return triple.first_albedo(w) + triple.rest_albedo(in); });
+  return wavelengths_.fold(each_crossed(w, [&](const ExactTriple& triple, const auto& in) {
+    return triple.first_albedo(w) + triple.rest_albedo(in);
+  }));
 }
 
 Rgb ExactRest::rest_albedo(const Vec3& w) const {
   if (w.z <= 0) return {};
-  const auto in = crossings(w);
-  return fold([&](const ExactTriple& triple) { return triple.rest_albedo(in); });
+  return wavelengths_.fold(
+      each_crossed(w, [](const ExactTriple& triple, const auto& in) { return triple.rest_albedo(in); }));
 }
 
 std::vector<double> ExactRest::facet_reflectance(double cosine) const {
@@ -191,8 +199,7 @@ std::vector<double> ExactRest::facet_reflectance(double cosine) const {
 }
 
 std::vector<double> ExactRest::arriving(const Vec3& w) const {
-  const auto in = crossings(w);
-  return each([&](const ExactTriple& triple) { return triple.arriving(in); });
+  return each_crossed(w, [](const ExactTriple& triple, const auto& in) { return triple.arriving(in); });
 }
 
 std::vector<double> ExactRest::gain() const {

@@ -34,8 +34,8 @@ class ExactTriple {
   // own.
   ExactTriple(const Material& material, const Wavelengths& three, const ExactResolution& resolution);
 
-  // Returns the ways to the base, which also serve triples that ask for fewer visible_nodes().
-  int visible_nodes() const { return film_.visible_nodes(); }
+  // Returns the ways to the base. Unless the film is layered they also serve triples of no shorter
+  // wavelengths.
   std::vector<CrossingNode> crossings(const Vec3& w) const { return film_.crossings(w); }
 
   // Holds what rest() needs of a direction with w.z > 0. Making it is what takes the time.
@@ -111,12 +111,12 @@ class ExactRest {
   template <class F>
   std::vector<double> each(F of_triple) const;
   template <class F>
-  Rgb fold(F of_triple) const;
-  std::vector<CrossingNode> crossings(const Vec3& w) const { return triples_[finest_].crossings(w); }
+  std::vector<double> each_crossed(const Vec3& w, F of_triple) const;
 
   Wavelengths wavelengths_;
+  bool is_layered_;
   std::vector<ExactTriple> triples_;  // the last one filled up with its last wavelength
-  std::size_t finest_;                // of them asks for most nodes
+  std::size_t finest_;                // of them has the shortest wavelength
 };
 
 }  // namespace sunbeam

@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "bake/live/exact/smooth_step.h"
 #include "bake/live/film/visible_normals.h"
 
 namespace sunbeam {
@@ -15,14 +16,7 @@ constexpr double kPhaseStep = 5;
 constexpr int kFilmPanelNodes = 16;
 // Extra nodes a radian of phase for normals visible from one direction, and where they end (time, not error).
 constexpr double kVisibleNodesPerRadian = 0.3;
-// A panel of a layered film counts as this.
-constexpr double kRadiansOfFilmPanel = 1;
 constexpr int kMaxVisibleNodes = 400;
-
-// A panel's variable t in [0, 1]: flat ends turn square-root singularities there into smooth functions.
-double smooth_step(double t) { return t * t * (3 - 2 * t); }
-double smooth_step_slope(double t) { return 6 * t * (1 - t); }
-double inverse_smooth_step(double x) { return 0.5 - std::sin(std::asin(1 - 2 * x) / 3); }
 
 // Calls visit(x, dx) for the nodes of every panel between neighbouring edges.
 template <class F>
@@ -53,8 +47,9 @@ FilmIntegrals::FilmIntegrals(const Material& material, const Wavelengths& three,
       film_panel_(gauss_legendre(kFilmPanelNodes)),
       normals_(gauss_legendre(resolution.normals)),
       azimuths_(gauss_legendre(resolution.azimuths)),
-      visible_(gauss_legendre(wanted_visible_nodes())),
+      visible_(gauss_legendre(visible_nodes())),
       visible_azimuths_(gauss_legendre(visible_.size() * 3 / 4)),
+      rings_(resolution.visible),
       turns_(material.roughness) {}
 
 // Phase difference of neighbouring reflections, radians, at the shortest wavelength.
@@ -91,12 +86,10 @@ void FilmIntegrals::visit_oscillations(walk::Side side, double low, double high,
 }
 
 // More where a wide lobe sees a thick film oscillate.
-int FilmIntegrals::wanted_visible_nodes() const {
+int FilmIntegrals::visible_nodes() const {
+  if (film_.is_layered()) return resolution_.visible;
   const walk::Side outside = walk::Side::outside;
-  const double radians = film_.is_layered()
-                             ? kRadiansOfFilmPanel * static_cast<double>(film_.edges(outside).size() - 1)
-                             : phase(outside, 1) - phase(outside, 0);
-  const double waves = radians * std::min(1.0, 4 * wider());
+  const double waves = (phase(outside, 1) - phase(outside, 0)) * std::min(1.0, 4 * wider());
   const int wanted = resolution_.visible + static_cast<int>(kVisibleNodesPerRadian * waves);
   return std::min(wanted, std::max(kMaxVisibleNodes, resolution_.visible));
 }
@@ -107,6 +100,14 @@ int FilmIntegrals::wanted_visible_nodes() const {
 template <class F>
 void FilmIntegrals::visit_visible(const Vec3& w, bool only_mirrored, F visit) const {
   const Vec3 from = material_.roughness.is_isotropic() ? direction_from_cosine(w.z, 0) : w;
+  if (film_.is_layered()) {
+    const FacetRings::Film film{material_.roughness, index_ratio_,
+                                critical_cosine(film_.outline_from(walk::Side::outside))};
+    const FacetRings rings(from, film, film_.edges(walk::Side::outside), rings_);
+    for (const auto& [normal, weight] : only_mirrored ? rings.mirroring() : rings.crossing())
+      visit(from, normal, weight);
+    return;
+  }
   const VisibleNormals visible(from, material_.roughness, film_.outline_from(walk::Side::outside),
                                index_ratio_);
   for_each_node(visible.azimuth_edges(), visible_azimuths_, [&](double azimuth, double dazimuth) {

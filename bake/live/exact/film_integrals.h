@@ -11,6 +11,7 @@
 
 #include "bake/live/exact/cosine_basis.h"
 #include "bake/live/exact/dense.h"
+#include "bake/live/exact/facet_rings.h"
 #include "bake/live/exact/film_sides.h"
 #include "bake/live/film/facet_turns.h"
 #include "bake/live/film/geometry.h"
@@ -42,11 +43,9 @@ class FilmIntegrals {
   // False if facets bend light, so that crossings() is a quadrature over many cosines.
   bool has_single_crossing() const { return !geometry_.has_glossy_crossing(); }
 
-  // Returns how many nodes crossings() takes each way: what they resolve depends on the wavelengths.
-  int visible_nodes() const { return visible_.size(); }
-  // Returns the ways of light along w, also for wavelengths that ask for fewer visible_nodes(); there are
-  // none under total reflection or over an opaque base. p_t(w -> m) dm is share times transmittance() at m.z
-  // = cosine.
+  // Returns the ways of light along w, unless the film is layered for all wavelengths not shorter than those
+  // of this object; there are none under total reflection or over an opaque base. p_t(w -> m) dm is share
+  // times transmittance() at m.z = cosine.
   std::vector<CrossingNode> crossings(const Vec3& w) const;
   Rgb transmittance(const CrossingNode& crossing) const { return power(crossing.facet_cosine).transmittance; }
 
@@ -76,7 +75,7 @@ class FilmIntegrals {
   // Returns the film's powers for light from outside.
   FilmPower power(double facet_cosine) const { return film_.at(walk::Side::outside, facet_cosine); }
   double phase(walk::Side side, double cosine) const;
-  int wanted_visible_nodes() const;
+  int visible_nodes() const;
   int oscillation_panels(walk::Side side, double low, double high) const;
   template <class F>
   void visit_oscillations(walk::Side side, double low, double high, F visit) const;
@@ -102,6 +101,7 @@ class FilmIntegrals {
   CosineBasis basis_;
   GaussInterpolation cosine_panel_;
   GaussRule fine_, film_panel_, normals_, azimuths_, visible_, visible_azimuths_;
+  FacetRings::Rules rings_;
   FacetTurns turns_;
 };
 

@@ -1,0 +1,70 @@
+// This file gives the GGX normals (sunbeam/detail/ggx.h) visible from one direction as nodes of a quadrature
+// that resolves a layered film: by rings about the direction, on each of which the film's powers are
+// constant.
+//
+// With theta the angle of a ring, h = cos(theta) w + sin(theta) (cos(psi) a + sin(psi) b) and a towards the
+// macro normal, dh = sin(theta) dtheta dpsi. What light does at a normal changes abruptly where its way on
+// grazes the surface: a bound on h.z, and so on psi. Over theta and psi go coordinates that widen the peak of
+// D: tan(x) of the distance from the macro normal over the roughness, and tan(psi / 2) = q tan(y / 2), which
+// makes 1 / (A - B cos(psi)) constant for q^2 = (A - B) / (A + B).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "bake/optics/quadrature.h"
+#include "sunbeam/detail/ggx.h"
+
+namespace sunbeam {
+
+class FacetRings {
+ public:
+  // Holds rules of quadrature: for rings on panels of falling width, and around half a ring.
+  struct Rules {
+    explicit Rules(int nodes);
+    const GaussRule& of_width(double share) const;  // of a panel, at most 1
+
+    std::vector<GaussRule> rings;
+    GaussRule around;
+  };
+
+  // Says how the light of a direction goes on; `ratio` is n0 / n2 if facets bend it, else 1, and `critical`
+  // the cosine with the normal at which it is reflected totally.
+  struct Film {
+    Roughness roughness;
+    double ratio, critical;
+  };
+  // `edges` are ascending cosines, from 0 to 1, between which the film's powers are smooth.
+  FacetRings(const Vec3& w, const Film& film, std::span<const double> edges, const Rules& rules);
+
+  struct Node {
+    Vec3 normal;
+    double weight;  // all visible normals together have 1
+  };
+  // Returns the normals that mirror w above the horizon, or that let it pass to below.
+  std::vector<Node> mirroring() const;
+  std::vector<Node> crossing() const;
+
+ private:
+  // Holds the cosines of psi between which a ring counts.
+  struct Arc {
+    double low, high;
+  };
+
+  template <class ArcOf>
+  std::vector<Node> nodes(std::vector<double> angles, ArcOf arc_of) const;
+  void add_ring(double angle, double weight, const Arc& arc, std::vector<Node>& nodes) const;
+  double coordinate(double angle) const { return std::atan((angle - tilt_) / width_); }
+  double cosine_of_psi(double angle, double normal_z) const;
+
+  Vec3 w_;
+  Film film_;
+  std::span<const double> edges_;
+  const Rules& rules_;
+  Ggx ggx_;
+  double sine_, tilt_;  // of the angle of w with the macro normal, and the angle
+  double width_;        // of D
+  Vec3 towards_, aside_;
+};
+
+}  // namespace sunbeam

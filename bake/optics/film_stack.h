@@ -51,6 +51,7 @@ class StackSpectrum {
  public:
   // Takes a stack for each wavelength, equal in number of layers and periods. `spread` is the relative
   // standard deviation of one factor on all thicknesses, normal and cut at three deviations; at most 1 / 3.
+  // With a spread it throws Error if the path 2 sum(n d) is longer than 100 wavelengths.
   StackSpectrum(const std::vector<FilmStack>& stacks, const std::vector<double>& wavelengths_nm,
                 double spread = 0);
 

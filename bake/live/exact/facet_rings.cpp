@@ -13,7 +13,9 @@ constexpr int kLeastNodes = 8;
 
 }  // namespace
 
-FacetRings::Rules::Rules(int nodes) : around(gauss_legendre(nodes)) {
+// The peak of D follows no simple coordinate of an anisotropic film's rings.
+FacetRings::Rules::Rules(int nodes, const Roughness& roughness)
+    : around(gauss_legendre(roughness.is_isotropic() ? nodes : 2 * nodes)) {
   for (int count = nodes;; count /= 2) {
     rings.push_back(gauss_legendre(std::max(count, kLeastNodes)));
     if (count <= kLeastNodes) return;

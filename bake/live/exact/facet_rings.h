@@ -21,7 +21,7 @@ class FacetRings {
  public:
   // Holds rules of quadrature: for rings on panels of falling width, and around half a ring.
   struct Rules {
-    explicit Rules(int nodes);
+    Rules(int nodes, const Roughness& roughness);
     const GaussRule& of_width(double share) const;  // of a panel, at most 1
 
     std::vector<GaussRule> rings;

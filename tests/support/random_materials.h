@@ -10,10 +10,23 @@
 
 namespace sunbeam::test {
 
-// Draws what the options of a material are taken from.
-class RandomMaterials {
+// Numbers of other kinds than uniform.
+class Draws {
  public:
-  explicit RandomMaterials(Rng& rng) : rng_(rng) {}
+  explicit Draws(Rng& rng) : rng_(rng) {}
+
+ protected:
+  bool chance(double p) { return rng_.uniform() < p; }
+  double between(double low, double high) { return low + (high - low) * rng_.uniform(); }
+  double logarithmic(double low, double high) { return low * std::pow(high / low, rng_.uniform()); }
+
+  Rng& rng_;
+};
+
+// Draws what the options of a material are taken from.
+class RandomMaterials : private Draws {
+ public:
+  using Draws::Draws;
 
   // Every third one scatters. The exterior is air or a liquid, the base denser or thinner than it.
   Material draw(int index) {
@@ -42,9 +55,6 @@ class RandomMaterials {
   }
 
  private:
-  bool chance(double p) { return rng_.uniform() < p; }
-  double between(double low, double high) { return low + (high - low) * rng_.uniform(); }
-  double logarithmic(double low, double high) { return low * std::pow(high / low, rng_.uniform()); }
   // Often below the exterior's, so that grazing light is reflected totally.
   double base_ior(double exterior) {
     if (chance(0.1)) return exterior;
@@ -60,8 +70,6 @@ class RandomMaterials {
     const double u = logarithmic(0.02, 0.7);
     return chance(0.3) ? Roughness(u, logarithmic(0.02, 0.7)) : Roughness(u);
   }
-
-  Rng& rng_;
 };
 
 }  // namespace sunbeam::test

@@ -93,7 +93,10 @@ double Pfmc::estimate_plain_pdf(const Vec3& wo, const Vec3& wi, Rng& rng, const 
   const auto crossing = events.cross(wo.z, facet, layers_.index_ratio);
   const double first = first_pdf(wo, wi);
   if (crossing.weight == 0) return first;
-  return first + (1 - reflect_chance(facet.cosine)) * below.pdf_below(wi, rng);
+  const double enters = 1 - reflect_chance(facet.cosine);
+  if (!layers_.is_layered()) return first + enters * below.pdf_below(wi, rng);
+  // What a dark film lets in it seldom lets out. Such walks are taken no more often than sample() takes them.
+  return rng.uniform() < enters ? first + below.pdf_below(wi, rng) : first;
 }
 
 // Density of where a walk below the film leaves. The base's guide asks for no direction of arrival.

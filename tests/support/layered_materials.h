@@ -82,6 +82,16 @@ inline std::vector<FilmDesign> absorbing_designs() {
 }
 inline std::vector<FilmDesign> opaque_designs() { return {oxide_design(), dark_oxide_design()}; }
 
+// The wavelengths with this film at each.
+inline Wavelengths layered(const FilmDesign& design, Wavelengths w) {
+  w.film_periods = design.periods;
+  for (const double nm : w.nm) {
+    w.layers.push_back(design.layers(nm));
+    if (design.base) w.base_index.push_back(design.base(nm));
+  }
+  return w;
+}
+
 // The material with this film. Over an opaque base it has no pigment.
 inline Configuration with_film(const FilmDesign& design, const NamedMaterial& bare) {
   Material m = bare.material;
@@ -97,13 +107,7 @@ inline Configuration with_film(const FilmDesign& design, const NamedMaterial& ba
     m.albedo = Rgb(0);
     m.absorption_per_nm = m.scattering_per_nm = 0;
   }
-  Wavelengths w = Wavelengths::rgb3(m);
-  w.film_periods = design.periods;
-  for (const double nm : w.nm) {
-    w.layers.push_back(design.layers(nm));
-    if (design.base) w.base_index.push_back(design.base(nm));
-  }
-  return {design.name + " " + bare.name, m, w};
+  return {design.name + " " + bare.name, m, layered(design, Wavelengths::rgb3(m))};
 }
 
 inline std::vector<Configuration> with_films(const std::vector<FilmDesign>& designs,

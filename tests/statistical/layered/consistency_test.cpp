@@ -95,5 +95,63 @@ TEST(LayeredConsistency, TechniquesAgree) {
   }
 }
 
+// Twelve wavelengths, of which LiveBsdf draws four in every call, each under a film of its own.
+std::vector<test::Configuration> many_wavelengths() {
+  std::vector<test::Configuration> result;
+  for (const auto& surface : test::film_surfaces({0.9, 0.8, 0.6}, 0.1)) {
+    const auto three = test::with_film(test::absorbing_design(), surface);
+    const Wavelengths twelve =
+        test::layered(test::absorbing_design(), test::twelve_wavelengths(three.material));
+    if (surface.name.ends_with("refract") || surface.name == "multiple straight")
+      result.push_back({three.name, three.material, twelve});
+  }
+  return result;
+}
+
+// 4 surfaces x 2 models x 3 channels at 4.5 standard errors: 2e-4.
+TEST(LayeredConsistency, ManyWavelengthsAreAsManySingleOnes) {
+  const Vec3 steep = spherical_direction(0.3, 2.5);
+  for (const auto& [name, material, wavelengths] : many_wavelengths()) {
+    const LiveBsdf live(material, wavelengths);
+    const Pfmc together(material, wavelengths);
+    std::vector<Pfmc> apart;
+    for (std::size_t k = 0; k < wavelengths.size(); ++k)
+      apart.emplace_back(material, test::at_one(wavelengths, k));
+    const Rgb first = together.first(kOblique, steep);
+    Rng rng(6, 0);
+    test::RgbMean expected, carried, drawn;
+    for (int i = 0; i < 1500; ++i) {
+      Rgb sum;
+      for (std::size_t k = 0; k < wavelengths.size(); ++k)
+        sum += wavelengths.weight[k] * apart[k].estimate_rest(kOblique, steep, rng).g;
+      expected.add(sum);
+      carried.add(together.estimate_rest(kOblique, steep, rng));
+      drawn.add(live.eval(kOblique, steep, rng) - first);
+    }
+    test::expect_agree(carried, expected, 4.5, 1e-7, name + ", carried");
+    test::expect_agree(drawn, expected, 4.5, 1e-7, name + ", drawn");
+    EXPECT_LE(drawn.g.std_error(), 0.05 * drawn.g.mean()) << name;
+  }
+}
+
+// The same for samples.
+TEST(LayeredConsistency, SamplesOfManyWavelengthsAreThoseOfSingleOnes) {
+  for (const auto& [name, material, wavelengths] : many_wavelengths()) {
+    Rgb expected, variance;
+    for (std::size_t k = 0; k < wavelengths.size(); ++k) {
+      const LiveBsdf one(material, test::at_one(wavelengths, k));
+      const auto grey = test::sample_totals(one, kOblique, 3000, 7 + k).albedo.g;
+      expected += wavelengths.weight[k] * grey.mean();
+      variance += wavelengths.weight[k] * wavelengths.weight[k] * square(grey.std_error());
+    }
+    const auto found = test::sample_totals(LiveBsdf(material, wavelengths), kOblique, 20000, 6).albedo;
+    for (int c = 0; c < 3; ++c) {
+      const double error = std::hypot(found[c].std_error(), std::sqrt(variance[c]));
+      EXPECT_NEAR(found[c].mean(), expected[c], 4.5 * error) << name << ' ' << c;
+      EXPECT_LE(error, 0.05 * expected[c]) << name << ' ' << c;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sunbeam

@@ -106,7 +106,7 @@ TEST(LayeredExact, NoLayersAreNoFilm) {
   for (auto [name, m] : test::all_modes()) {
     m.film_thickness_nm = 0;
     m.film_ior = m.base_ior;
-    const ExactRest bare(m, Wavelengths::rgb3(m)), exact(m, two_halves(m, Wavelengths::rgb3(m)));
+    const ExactRest bare(m, Wavelengths::rgb3(m)), exact(m, test::two_halves(m, Wavelengths::rgb3(m)));
     const Vec3 wo = spherical_direction(1.1, 0), wi = spherical_direction(0.6, 2);
     expect_relative(exact.rest(wo, wi), bare.rest(wo, wi), m.is_smooth() ? 1e-7 : 2e-5, name);
   }

@@ -5,6 +5,7 @@
 
 #include "bake/optics/compiler.h"
 #include "bake/optics/quadrature.h"
+#include "bake/optics/thin_film.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/vec.h"
 #include "sunbeam/detail/text.h"
@@ -38,16 +39,43 @@ SUNBEAM_INLINE ComplexQuad product(const ComplexQuad& a, const ComplexQuad& b) {
 }
 SUNBEAM_INLINE Quad squared_norm(const ComplexQuad& a) { return a.re * a.re + a.im * a.im; }
 
+// 1 / a, without the care for overflow that the language asks for.
+Complex inverse(Complex a) { return std::conj(a) / std::norm(a); }
+
 // The squared cosine in a medium of light that comes from `ior_from` at `cosine`. The formula is arranged so
 // that equal media keep every digit at grazing.
 Complex cosine_squared(double ior_from, Complex index, double cosine) {
-  return ((index - ior_from) * (index + ior_from) + square(ior_from * cosine)) / (index * index);
+  if (index.imag() == 0) return refracted_cosine_squared(ior_from, index.real(), cosine);
+  const Complex per_n = inverse(index);
+  return ((index - ior_from) * (index + ior_from) + square(ior_from * cosine)) * per_n * per_n;
 }
 
 // The root for which a wave that goes away decays.
 Complex cosine_of(Complex index, Complex c_squared) {
+  if (c_squared.imag() == 0 && index.imag() == 0) {
+    const double size = std::sqrt(std::abs(c_squared.real()));
+    return c_squared.real() < 0 ? Complex{0, size} : Complex{size, 0};
+  }
   const Complex c = std::sqrt(c_squared);
   return (index * c).imag() < 0 ? -c : c;
+}
+
+// What light of one direction meets in a layer, whatever its thickness: the phases k and delta = k c at the
+// nominal one, and factors of LayerMatrix.
+struct LayerAngle {
+  ComplexQuad k, delta, per_2c, n, per_n, n_c2, c2_per_n;
+};
+
+void set_lane(LayerAngle& a, std::size_t lane, Complex index, double phase, double ior_from, double cosine) {
+  const Complex c_squared = cosine_squared(ior_from, index, cosine), c = cosine_of(index, c_squared),
+                per_n = inverse(index);
+  a.k.set(lane, phase * index);
+  a.delta.set(lane, phase * index * c);
+  a.per_2c.set(lane, c == 0.0 ? 0 : 0.5 * inverse(c));
+  a.n.set(lane, index);
+  a.per_n.set(lane, per_n);
+  a.n_c2.set(lane, index * c_squared);
+  a.c2_per_n.set(lane, c_squared * per_n);
 }
 
 // What a layer does with the fields below it, times exp(i delta), so that thick layers do not overflow:
@@ -57,26 +85,38 @@ struct LayerMatrix {
   alignas(32) Quad damping;  // Im(delta)
 };
 
-void set_lane(LayerMatrix& m, std::size_t lane, Complex index, double phase, double ior_from, double cosine) {
-  const Complex c_squared = cosine_squared(ior_from, index, cosine), c = cosine_of(index, c_squared);
-  const Complex k = phase * index, delta = k * c, factor = std::exp(kI * delta);
-  Complex cos_delta, sine_over_c;
-  if (std::abs(delta) < 1e-3) {
-    const Complex x = delta * delta;
-    cos_delta = std::cos(delta) * factor;
-    sine_over_c = k * (1.0 - x / 6.0 * (1.0 - x / 20.0)) * factor;
-  } else {
-    const Complex twice = factor * factor;
-    cos_delta = 0.5 * (1.0 + twice);
-    sine_over_c = (twice - 1.0) / (2.0 * kI * c);
+// exp(i delta) at `factor` times the thickness.
+ComplexQuad turn_of(const LayerAngle& a, double factor) {
+  ComplexQuad turn;
+  for (std::size_t lane = 0; lane < 4; ++lane) {
+    const double re = factor * a.delta.re[lane], im = factor * a.delta.im[lane];
+    const double size = im == 0 ? 1 : std::exp(-im);
+    turn.set(lane, {size * std::cos(re), size * std::sin(re)});
   }
-  const Complex sine = -kI * sine_over_c;
-  m.cosine.set(lane, cos_delta);
-  m.s_per_q.set(lane, sine / index);
-  m.s_q.set(lane, sine * index * c_squared);
-  m.p_per_q.set(lane, sine * index);
-  m.p_q.set(lane, sine / index * c_squared);
-  m.damping[lane] = delta.imag();
+  return turn;
+}
+
+// -i sin(delta) / c exp(i delta) of a layer so thin that 1 - exp(2 i delta) loses digits.
+Complex thin_sine(Complex k, Complex delta, Complex turn) {
+  const Complex x = delta * delta;
+  return -kI * k * (1.0 - x / 6.0 * (1.0 - x / 20.0)) * turn;
+}
+
+SUNBEAM_INLINE LayerMatrix matrix_of(const LayerAngle& a, double factor) {
+  const ComplexQuad turn = turn_of(a, factor), twice = product(turn, turn);
+  ComplexQuad sine = product({1 - twice.re, -twice.im}, a.per_2c);
+  for (std::size_t lane = 0; lane < 4; ++lane) {
+    const Complex delta = factor * Complex(a.delta.re[lane], a.delta.im[lane]);
+    if (std::norm(delta) < 1e-6)
+      sine.set(lane, thin_sine(factor * Complex(a.k.re[lane], a.k.im[lane]), delta,
+                               {turn.re[lane], turn.im[lane]}));
+  }
+  return {{0.5 * (1 + twice.re), 0.5 * twice.im},
+          product(sine, a.per_n),
+          product(sine, a.n_c2),
+          product(sine, a.n),
+          product(sine, a.c2_per_n),
+          factor * a.delta.im};
 }
 
 // The fields of both polarisations at one height. Those of p are (H, E), as their admittance is c / N.
@@ -90,11 +130,9 @@ struct Fields {
     s_h = sum(product(m.cosine, s_h), product(m.s_q, e));
     p_h = sum(product(m.cosine, h), product(m.p_per_q, p_e));
     p_e = sum(product(m.cosine, p_e), product(m.p_q, h));
-    keep_finite();
   }
 
- private:
-  // Mirrors of many layers make fields grow without end.
+  // Mirrors of many layers make fields grow without end, but a few layers by less than the range of numbers.
   SUNBEAM_INLINE void keep_finite() {
     constexpr double kLarge = 0x1p200, kLogLarge = 200 * 0.693147180559945309417;
     const Quad size = squared_norm(s_e) + squared_norm(s_h) + squared_norm(p_h) + squared_norm(p_e);
@@ -116,7 +154,7 @@ struct End {
 void set_lane(End& end, std::size_t lane, Complex index, double ior_from, double cosine) {
   const Complex c_squared = cosine_squared(ior_from, index, cosine), c = cosine_of(index, c_squared);
   end.q_s.set(lane, index * c);
-  end.q_p.set(lane, c / index);
+  end.q_p.set(lane, c * inverse(index));
   end.is_open[lane] = index.imag() == 0 && c_squared.real() > 0;
 }
 
@@ -161,12 +199,17 @@ void write_sides(const LayerMatrix* layers, std::size_t count, int periods, cons
                  const End& base, LaneSides& sides) {
   Fields up = base.fields(), down = exterior.fields();
   Quad damping{};
-  for (int period = 0; period < periods; ++period)
-    for (std::size_t j = 0; j < count; ++j) {
-      up.pass(layers[count - 1 - j]);
-      down.pass(layers[j]);
-      damping += layers[j].damping;
+  constexpr std::size_t kFew = 8;
+  for (std::size_t passed = 0, j = 0; passed < count * static_cast<std::size_t>(periods); ++passed, ++j) {
+    if (j == count) j = 0;
+    up.pass(layers[count - 1 - j]);
+    down.pass(layers[j]);
+    damping += layers[j].damping;
+    if (passed % kFew == 0) {
+      up.keep_finite();
+      down.keep_finite();
     }
+  }
   const Polarised s = polarised(up.s_e, up.s_h, exterior.q_s.re, base.q_s.re),
                   p = polarised(up.p_h, up.p_e, exterior.q_p.re, base.q_p.re),
                   back_s = polarised(down.s_e, down.s_h, base.q_s.re, exterior.q_s.re),
@@ -212,36 +255,39 @@ StackSpectrum::StackSpectrum(const std::vector<FilmStack>& stacks, const std::ve
   if (spread > 0) factors_ = thickness_factors(spread, most_waves);
 }
 
-void StackSpectrum::add_powers(const Lanes& lanes, double factor, double weight, double ior_from,
-                               double cosine, double* above, double* through, double* below) const {
-  std::vector<LayerMatrix> layers(lanes.layers.size());
+void StackSpectrum::add_powers(const Lanes& lanes, double ior_from, double cosine, double* above,
+                               double* through, double* below) const {
+  std::vector<LayerAngle> angles(lanes.layers.size());
   End exterior, base;
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    for (std::size_t j = 0; j < layers.size(); ++j)
-      set_lane(layers[j], lane, {lanes.layers[j].n[lane], lanes.layers[j].k[lane]},
-               factor * lanes.phase[j][lane], ior_from, cosine);
+    for (std::size_t j = 0; j < angles.size(); ++j)
+      set_lane(angles[j], lane, {lanes.layers[j].n[lane], lanes.layers[j].k[lane]}, lanes.phase[j][lane],
+               ior_from, cosine);
     set_lane(exterior, lane, exterior_ior_, ior_from, cosine);
     set_lane(base, lane, {lanes.base.n[lane], lanes.base.k[lane]}, ior_from, cosine);
   }
-  LaneSides sides;
-  write_sides(layers.data(), layers.size(), periods_, exterior, base, sides);
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    const double r = exterior.is_open[lane] ? sides.above[lane] : 1;
-    above[lane] += weight * r;
-    if (exterior.is_open[lane])
-      through[lane] += weight * std::exp(sides.log_damping[lane]) * sides.through[lane];
-    below[lane] += weight * (base.is_open[lane] ? sides.below[lane] : r);
+  std::vector<LayerMatrix> layers(angles.size());
+  for (const auto& [factor, weight] : factors_) {
+    for (std::size_t j = 0; j < angles.size(); ++j) layers[j] = matrix_of(angles[j], factor);
+    LaneSides sides;
+    write_sides(layers.data(), layers.size(), periods_, exterior, base, sides);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const double r = exterior.is_open[lane] ? sides.above[lane] : 1;
+      above[lane] += weight * r;
+      if (exterior.is_open[lane])
+        through[lane] += weight * std::exp(sides.log_damping[lane]) * sides.through[lane];
+      below[lane] += weight * (base.is_open[lane] ? sides.below[lane] : r);
+    }
   }
 }
 
 void StackSpectrum::powers(double ior_from, double cosine, double* above, double* through,
                            double* below) const {
   for (double* values : {above, through, below}) std::fill_n(values, lanes(), 0.0);
-  for (std::size_t chunk = 0; chunk < lanes_.size(); ++chunk)
-    for (const auto& [factor, weight] : factors_) {
-      const std::size_t at = chunk * kLanes;
-      add_powers(lanes_[chunk], factor, weight, ior_from, cosine, above + at, through + at, below + at);
-    }
+  for (std::size_t chunk = 0; chunk < lanes_.size(); ++chunk) {
+    const std::size_t at = chunk * kLanes;
+    add_powers(lanes_[chunk], ior_from, cosine, above + at, through + at, below + at);
+  }
 }
 
 StackPower stack_power(const FilmStack& stack, double cos_exterior, double wavelength_nm) {

@@ -78,8 +78,8 @@ class StackSpectrum {
     Index base;
   };
 
-  void add_powers(const Lanes& lanes, double factor, double weight, double ior_from, double cosine,
-                  double* above, double* through, double* below) const;
+  void add_powers(const Lanes& lanes, double ior_from, double cosine, double* above, double* through,
+                  double* below) const;
 
   std::size_t count_;
   double exterior_ior_;

@@ -15,6 +15,7 @@
 #include "bake/check/walked_mean.h"
 #include "bake/live/exact/exact.h"
 #include "bake/live/pfmc.h"
+#include "bake/optics/layered/layered_film.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/table_bsdf.h"
 
@@ -86,8 +87,18 @@ class LivePoint {
   Rng rng_;
 };
 
+// The reflectance of a film that the live model tabulates, in closed form.
+Results layered_film(const Material& material, const Wavelengths& wavelengths, const Point& point) {
+  const StackSpectrum film = stack_spectrum(material, wavelengths);
+  std::vector<double> above(film.lanes()), through(film.lanes()), below(film.lanes());
+  film.powers(material.exterior_ior, point.wi.z, above.data(), through.data(), below.data());
+  return {{"reflectance", wavelengths.fold(above)}};
+}
+
 Results live_results(const Material& material, const Wavelengths& wavelengths, const Point& point,
                      const PointsSettings& settings) {
+  if (settings.quantity == Quantity::film && is_layered(material, wavelengths))
+    return layered_film(material, wavelengths, point);
   LivePoint live(material, wavelengths, point, settings);
   if (settings.quantity == Quantity::brdf) return live.brdf();
   return settings.quantity == Quantity::albedo ? live.albedo() : live.film();
@@ -214,13 +225,27 @@ class TableRows {
 
 }  // namespace
 
+// Numbers of Material say nothing where the recipe has a design in their place.
+void refuse_designed(const Csv& csv, const FilmDesign& film) {
+  const auto refuse = [&](const char* key, const char* owner) {
+    if (csv.column(key))
+      throw Error(
+          fmt::format("{}: column '{}': {}; allowed: another recipe, or --set", csv.name, key, owner));
+  };
+  if (!film.layers.empty()) refuse("film_ior", "the layers of the recipe's film have indices of their own");
+  if (!film.base) return;
+  for (const char* key : {"base_ior", "base_extinction"})
+    refuse(key, "the recipe's base has an index over the wavelength");
+}
+
 PointsReport evaluate_points_live(const Material& material, const Spectrum& spectrum, const Csv& csv,
                                   const PointsSettings& settings, std::ostream& out) {
   const PointColumns reader(csv, settings.quantity);
   if (holds_film_points(csv, settings.quantity)) {
-    evaluate_film_points(material, csv, out);
+    evaluate_film_points(material, spectrum.film(), csv, out);
     return {{}, reader.unused()};
   }
+  refuse_designed(csv, spectrum.film());
   const LiveRows rows(material, spectrum, csv, reader);
   std::set<std::string> used;
   for (std::size_t k = 0; k < csv.rows.size(); ++k) {

@@ -54,37 +54,35 @@ std::vector<FilmLayer> layers_of(const std::string& text) {
   return layers;
 }
 
+// A base of its own index has no n at one wavelength to keep beside a column of k, nor the other way round.
+void require_whole_base(const Csv& csv) {
+  const auto ior = csv.column("base_ior"), extinction = csv.column("base_extinction");
+  if (ior.has_value() == extinction.has_value()) return;
+  throw Error(
+      fmt::format("{}: column '{}' stands alone, and the recipe's base has an index over the "
+                  "wavelength; allowed: base_ior and base_extinction together, or neither",
+                  csv.name, ior ? "base_ior" : "base_extinction"));
+}
+
 // The columns of one CSV, found once.
 class FilmRows {
  public:
-  FilmRows(const Material& material, const Csv& csv)
+  FilmRows(const Material& material, const FilmDesign& film, const Csv& csv)
       : material_(material),
+        film_(film),
         csv_(csv),
         layers_(require(csv, "layers")),
         theta_(require(csv, "theta_i_deg")),
         wavelength_(require(csv, "wavelength_nm")) {
     refuse_other_keys(csv);
-  }
-
-  FilmStack stack(const CsvRow& row) const {
-    const Interval exterior = allowed_interval("exterior_ior");
-    FilmStack stack;
-    stack.exterior_ior = number(row, "exterior_ior", exterior.low, exterior.high, material_.exterior_ior);
-    stack.base_index = {number(row, "base_ior", kLeastIor, kLargestIor, material_.base_ior),
-                        number(row, "base_extinction", 0, kMostExtinction, 0)};
-    try {
-      stack.layers = layers_of(row.cells[layers_]);
-    } catch (const Error& error) {
-      throw Error(fmt::format("{}:{}: {}", csv_.name, row.line, error.what()));
-    }
-    return stack;
+    if (film_.base) require_whole_base(csv);
   }
 
   // The results as text, each behind a comma.
   std::string results(const CsvRow& row) const {
-    const FilmStack layers = stack(row);
     const double cosine = std::cos(csv_.number(row, theta_, 0, 90, false) * kPi / 180);
     const double nm = csv_.number(row, wavelength_, 100, 10000, true);
+    const FilmStack layers = stack(row, nm);
     const StackPower power = stack_power(layers, cosine, nm);
     const auto below = reflectance_below(layers, cosine, nm);
     return fmt::format(",{:.17g},{:.17g},{}", power.reflectance, power.transmittance,
@@ -92,12 +90,28 @@ class FilmRows {
   }
 
  private:
+  FilmStack stack(const CsvRow& row, double nm) const {
+    const Interval exterior = allowed_interval("exterior_ior");
+    FilmStack stack;
+    stack.exterior_ior = number(row, "exterior_ior", exterior.low, exterior.high, material_.exterior_ior);
+    stack.base_index = {number(row, "base_ior", kLeastIor, kLargestIor, material_.base_ior),
+                        number(row, "base_extinction", 0, kMostExtinction, material_.base_extinction)};
+    try {
+      if (film_.base && !csv_.column("base_ior")) stack.base_index = film_.base_at(nm);
+      stack.layers = layers_of(row.cells[layers_]);
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}:{}: {}", csv_.name, row.line, error.what()));
+    }
+    return stack;
+  }
+
   double number(const CsvRow& row, const char* key, double low, double high, double fallback) const {
     const auto column = csv_.column(key);
     return column ? csv_.number(row, *column, low, high, true) : fallback;
   }
 
   const Material& material_;
+  const FilmDesign& film_;
   const Csv& csv_;
   std::size_t layers_, theta_, wavelength_;
 };
@@ -112,11 +126,12 @@ bool holds_film_points(const Csv& csv, Quantity quantity) {
   return csv.column("layers").has_value();
 }
 
-void evaluate_film_points(const Material& material, const Csv& csv, std::ostream& out) {
+void evaluate_film_points(const Material& material, const FilmDesign& film, const Csv& csv,
+                          std::ostream& out) {
   for (const char* name : kResults)
     if (csv.column(name))
       throw Error(fmt::format("{}: column '{}' has the name of an output column", csv.name, name));
-  const FilmRows rows(material, csv);
+  const FilmRows rows(material, film, csv);
   std::string text = fmt::format("{},{}\n", csv_line(csv.header), fmt::join(kResults, ","));
   for (const CsvRow& row : csv.rows) text += csv_line(row.cells) + rows.results(row) + "\n";
   out << text;

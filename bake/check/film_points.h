@@ -4,6 +4,7 @@
 #include <iosfwd>
 
 #include "bake/check/point_columns.h"
+#include "bake/optics/dispersion/film_design.h"
 #include "sunbeam/material.h"
 
 namespace sunbeam {
@@ -12,10 +13,12 @@ namespace sunbeam {
 bool holds_film_points(const Csv& csv, Quantity quantity);
 
 // Columns: `layers`, thickness_nm/ior/extinction of every layer from top to bottom, separated by ';';
-// theta_i_deg, wavelength_nm; exterior_ior and base_ior, `material`'s if absent; base_extinction, 0 if
-// absent. Writes the rows with the powers reflectance, transmittance and reflectance_below: the last along
-// the direction that light takes in the base, empty if the base absorbs or there is none. Throws Error before
+// theta_i_deg, wavelength_nm; exterior_ior, base_ior and base_extinction, those of the recipe if absent,
+// whose `material` and `film` are given. A base of its own index takes both columns of the base or none.
+// Writes the rows with the powers reflectance, transmittance and reflectance_below: the last along the
+// direction that light takes in the base, empty if the base absorbs or there is none. Throws Error before
 // anything is written if a row is bad.
-void evaluate_film_points(const Material& material, const Csv& csv, std::ostream& out);
+void evaluate_film_points(const Material& material, const FilmDesign& film, const Csv& csv,
+                          std::ostream& out);
 
 }  // namespace sunbeam

@@ -9,8 +9,6 @@
 namespace sunbeam {
 namespace {
 
-const std::string kBase = "key 'base_ior'";
-
 // Returns the index at a wavelength; an Error of it names what it is the index of.
 std::complex<double> index_at(const OpticalIndex& index, double nm, const std::string& where) {
   try {
@@ -18,15 +16,6 @@ std::complex<double> index_at(const OpticalIndex& index, double nm, const std::s
   } catch (const Error& error) {
     throw Error(where + ": " + error.what());
   }
-}
-
-std::complex<double> clear_base_at(const OpticalIndex& base, double nm) {
-  const std::complex<double> index = index_at(base, nm, kBase);
-  if (index.imag() > kClearExtinction)
-    throw Error(kBase + ": found k = " + to_text(index.imag()) + " at " + to_text(nm) +
-                " nm, but the base is clear at visible wavelengths; allowed: wavelengths at which it is "
-                "clear");
-  return index.real();
 }
 
 }  // namespace
@@ -60,17 +49,27 @@ double FilmDesign::path_nm(const Material& material, double thickness) const {
   return longest * periods * (thickness / listed);
 }
 
+std::complex<double> FilmDesign::base_at(double nm) const {
+  const std::string where = "key 'base_ior'";
+  const std::complex<double> index = index_at(*base, nm, where);
+  if (index.imag() == 0 || is_opaque(*base)) return index;
+  if (index.imag() > kClearExtinction)
+    throw Error(where + ": found k = " + to_text(index.imag()) + " at " + to_text(nm) +
+                " nm, but the base is clear at visible wavelengths; allowed: wavelengths at which it is "
+                "clear");
+  return index.real();
+}
+
 void FilmDesign::fill(Wavelengths& wavelengths) const {
   if (!layers.empty()) wavelengths.film_periods = periods;
-  const bool opaque = base && is_opaque(*base);
   for (const double nm : wavelengths.nm) {
-    if (base)
-      wavelengths.base_index.push_back(opaque ? index_at(*base, nm, kBase) : clear_base_at(*base, nm));
+    if (base) wavelengths.base_index.push_back(base_at(nm));
     if (layers.empty()) continue;
     std::vector<FilmLayer>& at_nm = wavelengths.layers.emplace_back();
-    for (const DesignLayer& layer : layers)
-      at_nm.push_back({layer.thickness_nm,
-                       index_at(layer.index, nm, "the film's layer " + std::to_string(at_nm.size() + 1))});
+    for (const DesignLayer& layer : layers) {
+      const std::string where = "layer " + std::to_string(at_nm.size() + 1) + " of the film";
+      at_nm.push_back({layer.thickness_nm, index_at(layer.index, nm, where)});
+    }
   }
 }
 

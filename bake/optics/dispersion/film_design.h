@@ -42,8 +42,13 @@ struct FilmDesign {
   // longest.
   double path_nm(const Material& material, double thickness_nm) const;
 
-  // Fills in layers, film_periods and base_index at the wavelengths. Throws Error naming the key if an index
-  // is not known there, or if a base that is clear at visible wavelengths absorbs there.
+  // Returns the index of `base`, which there must be, at a wavelength: a real one if it is clear. Throws
+  // Error naming the key if it is not known there, or if it is clear at visible wavelengths and absorbs
+  // there.
+  std::complex<double> base_at(double wavelength_nm) const;
+
+  // Fills in layers, film_periods and base_index at the wavelengths. Throws Error if an index is not known
+  // there.
   void fill(Wavelengths& wavelengths) const;
 };
 

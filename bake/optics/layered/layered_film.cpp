@@ -1,9 +1,7 @@
 #include "bake/optics/layered/layered_film.h"
 
 namespace sunbeam {
-namespace {
-
-FilmStack stack_at(const Material& material, const Wavelengths& wavelengths, std::size_t k) {
+FilmStack film_stack(const Material& material, const Wavelengths& wavelengths, std::size_t k) {
   FilmStack stack{material.exterior_ior, {}, {material.base_ior, material.base_extinction}, 1};
   if (!wavelengths.base_index.empty()) stack.base_index = wavelengths.base_index[k];
   if (wavelengths.layers.empty()) {
@@ -19,8 +17,6 @@ FilmStack stack_at(const Material& material, const Wavelengths& wavelengths, std
   return stack;
 }
 
-}  // namespace
-
 bool is_layered(const Material& material, const Wavelengths& wavelengths) {
   return !wavelengths.layers.empty() || !wavelengths.base_index.empty() || material.is_opaque() ||
          material.thickness_spread > 0;
@@ -28,7 +24,7 @@ bool is_layered(const Material& material, const Wavelengths& wavelengths) {
 
 StackSpectrum stack_spectrum(const Material& material, const Wavelengths& wavelengths) {
   std::vector<FilmStack> stacks;
-  for (std::size_t k = 0; k < wavelengths.size(); ++k) stacks.push_back(stack_at(material, wavelengths, k));
+  for (std::size_t k = 0; k < wavelengths.size(); ++k) stacks.push_back(film_stack(material, wavelengths, k));
   return {stacks, wavelengths.nm, material.thickness_spread};
 }
 

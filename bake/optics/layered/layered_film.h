@@ -11,6 +11,9 @@ namespace sunbeam {
 // not serve it.
 bool is_layered(const Material& material, const Wavelengths& wavelengths);
 
+// Returns film and base at the wavelength of this number, of any film.
+FilmStack film_stack(const Material& material, const Wavelengths& wavelengths, std::size_t k);
+
 // Returns the film's powers in closed form, for any film.
 StackSpectrum stack_spectrum(const Material& material, const Wavelengths& wavelengths);
 

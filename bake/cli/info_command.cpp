@@ -8,6 +8,7 @@
 #include "bake/cli/json_text.h"
 #include "bake/cli/separate_files.h"
 #include "bake/live/estimator.h"
+#include "bake/optics/layered/layered_film.h"
 #include "bake/recipe/recipe.h"
 #include "sunbeam/detail/file.h"
 #include "sunbeam/detail/text.h"
@@ -90,23 +91,61 @@ Json describe(const EstimatorChoice& choice) {
   return {{"estimator", name_of(choice.estimator)}, {"reason", choice.reason}};
 }
 
-// What `auto` takes for a recipe.
-int run_info_of_recipe(const InfoOptions& options) {
-  const Recipe recipe = load_recipe(options.source);
+// A film of layers and its base, with indices at 510 nm.
+void describe_layers(const Recipe& recipe, Json& json) {
+  const Material& material = recipe.material;
+  const FilmStack stack = film_stack(material, recipe.spectrum.monochromatic(material, 510), 0);
+  json["film"] = {{"thickness_nm", material.film_thickness_nm},
+                  {"thickness_spread", material.thickness_spread},
+                  {"periods", stack.periods}};
+  for (const FilmLayer& layer : stack.layers)
+    json["film"]["layers"].push_back({{"thickness_nm", layer.thickness_nm},
+                                      {"ior", layer.index.real()},
+                                      {"extinction", layer.index.imag()}});
+  json["base"] = {{"ior", stack.base_index.real()},
+                  {"extinction", stack.base_index.imag()},
+                  {"opaque", material.is_opaque()}};
+}
+
+Json describe(const Recipe& recipe) {
   Json json;
   json["recipe_hash"] = recipe.hash;
   for (const auto& [key, value] : recipe.spectrum.attributes()) json[key] = value;
+  if (!recipe.live_key.empty()) describe_layers(recipe, json);
   json["eval"] = describe(automatic_for_eval(recipe.material));
   json["render"] = describe(automatic_for_render(recipe.material));
-  if (options.json) {
-    out("{}\n", json_text(json));
-    return 0;
+  return json;
+}
+
+void print_layers(const Json& json) {
+  const Json& film = json["film"];
+  out("film            {:g} nm, thickness_spread {:g}, periods {} of {} layers\n",
+      film["thickness_nm"].get<double>(), film["thickness_spread"].get<double>(), film["periods"].get<int>(),
+      film["layers"].size());
+  for (const Json& layer : film["layers"])
+    out("layer           {:g} nm, n {:g}, k {:g} at 510 nm\n", layer["thickness_nm"].get<double>(),
+        layer["ior"].get<double>(), layer["extinction"].get<double>());
+  const Json& base = json["base"];
+  out("base            n {:g}, k {:g} at 510 nm, {}\n", base["ior"].get<double>(),
+      base["extinction"].get<double>(), base["opaque"].get<bool>() ? "opaque" : "clear");
+}
+
+void print_text(const Json& json) {
+  for (const auto& [key, value] : json.items()) {
+    if (key == "film") print_layers(json);
+    if (value.is_string()) out("{:<16}{}\n", key, value.get<std::string>());
+    if (value.contains("reason"))
+      out("{:<16}{}: {}\n", key, value["estimator"].get<std::string>(), value["reason"].get<std::string>());
   }
-  for (const auto& [key, value] : json.items())
-    out("{:<16}{}\n", key,
-        value.is_string() ? value.get<std::string>()
-                          : fmt::format("{}: {}", value["estimator"].get<std::string>(),
-                                        value["reason"].get<std::string>()));
+}
+
+// The film of a recipe, and what `auto` takes.
+int run_info_of_recipe(const InfoOptions& options) {
+  const Json json = describe(load_recipe(options.source));
+  if (options.json)
+    out("{}\n", json_text(json));
+  else
+    print_text(json);
   return 0;
 }
 

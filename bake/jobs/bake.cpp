@@ -65,6 +65,7 @@ void require_reasonable_size(const Recipe& recipe, Encoding encoding) {
 }
 
 std::unique_ptr<BakeJob> make_job(const Recipe& recipe, Encoding encoding, std::uint64_t seed) {
+  require_bakeable(recipe);
   if (encoding == Encoding::factored) return factored_job(recipe, seed);
   return is_solved(recipe) ? solved_job(recipe, seed) : walked_job(recipe, seed);
 }

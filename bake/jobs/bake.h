@@ -20,7 +20,7 @@ void require_reasonable_size(const Recipe& recipe, Encoding encoding);
 // Returns the bytes of the table's arrays, uncompressed.
 double bytes_of(const Recipe& recipe, Encoding encoding);
 
-// Makes the job, which `recipe` must outlive.
+// Makes the job, which `recipe` must outlive. Throws Error if no table can hold the recipe's film yet.
 std::unique_ptr<BakeJob> make_job(const Recipe& recipe, Encoding encoding, std::uint64_t seed);
 
 struct BakeSettings {

@@ -2,6 +2,8 @@
 // spectrum.
 #pragma once
 
+#include <string>
+
 #include "bake/optics/dispersion/film_design.h"
 #include "runtime/config/config.h"
 #include "sunbeam/material.h"
@@ -11,6 +13,7 @@ namespace sunbeam {
 struct MaterialKeys {
   Material material;
   FilmDesign film;
+  std::string live_key;  // what no table holds yet; empty if tables hold it all
 };
 
 // Below an opaque base nothing is seen: keys of what lies there are refused, and albedo and absorption are 0.

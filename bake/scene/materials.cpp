@@ -81,6 +81,18 @@ Material highest(const SceneMaterial& skin, const Material& material) {
   return Parameters{high(0), high(1), high(2)}.applied_to(material);
 }
 
+// A scene's own parameters may not contradict what the recipe says of the base.
+void require_same_base(const SceneMaterial& skin, const Recipe& recipe) {
+  const auto& base_ior = skin.parameters[1];
+  if (recipe.spectrum.film().base && base_ior &&
+      base_ior->bounds() != std::pair(recipe.material.base_ior, recipe.material.base_ior))
+    throw Error(
+        "key 'base_ior': found beside a recipe whose base has an index over the wavelength; leave the key "
+        "out");
+  const auto defect = highest(skin, recipe.material).defect();
+  if (defect) throw Error(defect->message());
+}
+
 }  // namespace
 
 SceneMaterials::SceneMaterials(Scene& scene, const std::string& scene_path, const std::string& mode,
@@ -144,6 +156,7 @@ void SceneMaterials::add_table_skin(const SceneMaterial& skin, const Table& tabl
 }
 
 void SceneMaterials::add_live_skin(const SceneMaterial& skin, const Recipe& recipe, Estimator wanted) {
+  require_same_base(skin, recipe);
   const Material material = highest(skin, recipe.material);
   Estimator estimator = estimator_for_render(wanted, material);
   // An exact evaluator is prepared for many look-ups, which those of one hit cannot repay.

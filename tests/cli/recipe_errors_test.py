@@ -72,9 +72,12 @@ class RecipeErrors(support.CliTest):
         self.refuse("bake", name, "-o", "out.exr", naming=["key 'limits': removed in 0.2.0", "leave the section out"])
 
     def test_wrong_types(self):
-        self.check("material", "base_ior", '"1.5"', "found a string", "number")
-        self.check("material", "base_ior", "true", "found a boolean", "number")
-        self.check("material", "base_ior", "[1.5]", "found a", "number")
+        self.check("material", "exterior_ior", '"1.5"', "found a string", "number")
+        self.check("material", "exterior_ior", "[1.5]", "found a", "number")
+        for key in ("base_ior", "film_ior"):
+            self.check("material", key, '"1.5"', 'found "1.5"', "a table of optical constants", "nearest")
+            self.check("material", key, "true", "found a boolean", "a number", "[nm, n]")
+            self.check("material", key, "[1.5]", "element 1 is 1.5", "lists of 2 to 3 numbers")
         self.check("material", "base_ior", "2020-01-01", "found a date", "number")
         self.check("material", "transmission", "1", "found 1", "string")
         self.check("material", "transmission", '"sideways"', 'found "sideways"', '"straight", "refract"')

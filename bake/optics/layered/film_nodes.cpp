@@ -9,10 +9,10 @@
 namespace sunbeam {
 namespace {
 
-constexpr int kAngles = 33, kThicknesses = 12;
+constexpr int kAngles = 33, kThicknesses = 8;
 
 // How much thicker the film is at each further step.
-constexpr double kStep = 1.25;
+constexpr double kStep = 1.4;
 
 // What is to be folded: a film without spread.
 struct Film {

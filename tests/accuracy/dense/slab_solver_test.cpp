@@ -9,6 +9,7 @@
 #include "bake/optics/quadrature.h"
 #include "sunbeam/core/error.h"
 #include "tests/accuracy/support.h"
+#include "tests/support/film_designs.h"
 
 namespace sunbeam {
 namespace {
@@ -110,6 +111,44 @@ TEST(SlabSolver, FinerNodesChangeLittle) {
           << kCosines[a] << ' ' << kCosines[b];
     });
   }
+}
+
+// Two halves of a film, by curves, are the film in closed form.
+TEST(SlabSolver, LayersOfOneFilmAreTheFilm) {
+  for (const Material& material : slabs()) {
+    const auto expected = solve(material, kCosines);
+    SlabSolver solver(material, kCosines);
+    solver.add_depth(material.optical_depth());
+    const auto found = SlabSolver::Film(solver, material.film_thickness_nm,
+                                        test::two_halves(material, Wavelengths::rgb3(material)))
+                           .rest(material.optical_depth());
+    each_pair([&](std::size_t a, std::size_t b, double phi) {
+      const Rgb value = expected.at(a, b, phi);
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(found.at(a, b, phi)[c], value[c], 1e-6 * value[c]) << kCosines[a] << ' ' << kCosines[b];
+    });
+  }
+}
+
+// What absorbing layers keep is missing in what comes back, and an untouched colour stays as it is.
+TEST(SlabSolver, AbsorbingLayersKeepLight) {
+  Material material = slab(1.5, 0);
+  const auto beetle = test::beetle(material);
+  test::FilmDesign clear = beetle;
+  for (const std::size_t k : {0, 1})
+    for (FilmLayer& layer : clear.wavelengths.layers[k]) layer.index = layer.index.real();
+  const auto solve_film = [&](const test::FilmDesign& film) {
+    SlabSolver solver(film.material, kCosines);
+    solver.add_depth(0);
+    return SlabSolver::Film(solver, film.material.film_thickness_nm, film.wavelengths).rest(0);
+  };
+  const auto found = solve_film(beetle), without = solve_film(clear);
+  each_pair([&](std::size_t a, std::size_t b, double phi) {
+    const Rgb absorbed = found.at(a, b, phi), all = without.at(a, b, phi);
+    EXPECT_LT(absorbed.r, 0.8 * all.r);
+    EXPECT_LT(absorbed.g, 0.8 * all.g);
+    EXPECT_NEAR(absorbed.b, all.b, 1e-6 * all.b);
+  });
 }
 
 // A smooth film over a clear pigment and a white base: all light comes back.

@@ -9,6 +9,7 @@
 // makes 1 / (A - B cos(psi)) constant for q^2 = (A - B) / (A + B).
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -19,12 +20,14 @@ namespace sunbeam {
 
 class FacetRings {
  public:
-  // Holds rules of quadrature: for rings on panels of falling width, and around half a ring.
+  // Holds rules of quadrature: rings of a panel, the film on a part of a panel, and facets of half a ring.
   struct Rules {
     Rules(int nodes, const Roughness& roughness);
     const GaussRule& of_width(double share) const;  // of a panel, at most 1
 
-    std::vector<GaussRule> rings;
+    int panels;  // that rings are divided into
+    GaussInterpolation panel;
+    std::vector<GaussRule> film;
     GaussRule around;
   };
 
@@ -37,24 +40,36 @@ class FacetRings {
   // `edges` are ascending cosines, from 0 to 1, between which the film's powers are smooth.
   FacetRings(const Vec3& w, const Film& film, std::span<const double> edges, const Rules& rules);
 
+  // Int D_vis(h; w) power(w.h) f(h) dh is the sum of weight * power * f(normal), with the power integrated
+  // over neighbouring rings.
   struct Node {
     Vec3 normal;
-    double weight;  // all visible normals together have 1
+    double weight;
+    Rgb power;
   };
-  // Returns the normals that mirror w above the horizon, or that let it pass to below.
-  std::vector<Node> mirroring() const;
-  std::vector<Node> crossing() const;
+  using Power = std::function<Rgb(double cosine)>;
+  // Return the normals that mirror w above the horizon, or that let it pass to below.
+  std::vector<Node> mirroring(const Power& power) const;
+  std::vector<Node> crossing(const Power& power) const;
 
  private:
   // Holds the cosines of psi between which a ring counts.
   struct Arc {
     double low, high;
   };
+  // Stands for x = low + width smooth_step(t), from <= t <= to.
+  struct Panel {
+    double low, width, from, to;
+    double at(double t) const;
+  };
 
   template <class ArcOf>
-  std::vector<Node> nodes(std::vector<double> angles, ArcOf arc_of) const;
-  void add_ring(double angle, double weight, const Arc& arc, std::vector<Node>& nodes) const;
+  std::vector<Node> nodes(std::vector<double> angles, ArcOf arc_of, const Power& power) const;
+  std::vector<Rgb> moments(const Panel& panel, const Power& power) const;
+  void add_ring(double angle, double weight, const Arc& arc, const Rgb& power,
+                std::vector<Node>& nodes) const;
   double coordinate(double angle) const { return std::atan((angle - tilt_) / width_); }
+  double angle_at(double x) const { return tilt_ + width_ * std::tan(x); }
   double cosine_of_psi(double angle, double normal_z) const;
 
   Vec3 w_;

@@ -94,20 +94,16 @@ int FilmIntegrals::visible_nodes() const {
   return std::min(wanted, std::max(kMaxVisibleNodes, resolution_.visible));
 }
 
+Vec3 FilmIntegrals::turned(const Vec3& w) const {
+  return material_.roughness.is_isotropic() ? direction_from_cosine(w.z, 0) : w;
+}
+
 // Calls visit(w, normal, weight) for normals visible from w, turned to azimuth 0 if the film is isotropic;
 // the weights of all normals sum to 1. What mirrors w under the horizon is left out if only_mirrored, without
 // a kink for the quadrature.
 template <class F>
 void FilmIntegrals::visit_visible(const Vec3& w, bool only_mirrored, F visit) const {
-  const Vec3 from = material_.roughness.is_isotropic() ? direction_from_cosine(w.z, 0) : w;
-  if (film_.is_layered()) {
-    const FacetRings::Film film{material_.roughness, index_ratio_,
-                                critical_cosine(film_.outline_from(walk::Side::outside))};
-    const FacetRings rings(from, film, film_.edges(walk::Side::outside), rings_);
-    for (const auto& [normal, weight] : only_mirrored ? rings.mirroring() : rings.crossing())
-      visit(from, normal, weight);
-    return;
-  }
+  const Vec3 from = turned(w);
   const VisibleNormals visible(from, material_.roughness, film_.outline_from(walk::Side::outside),
                                index_ratio_);
   for_each_node(visible.azimuth_edges(), visible_azimuths_, [&](double azimuth, double dazimuth) {
@@ -120,28 +116,50 @@ void FilmIntegrals::visit_visible(const Vec3& w, bool only_mirrored, F visit) co
   });
 }
 
+// Those of a layered film, for light along w; w is at azimuth 0 if the film is isotropic.
+FacetRings FilmIntegrals::rings(const Vec3& w) const {
+  const walk::Side outside = walk::Side::outside;
+  const double critical = critical_cosine(film_.outline_from(outside));
+  return {w, {material_.roughness, index_ratio_, critical}, film_.edges(outside), rings_};
+}
+
 std::vector<CrossingNode> FilmIntegrals::crossings(const Vec3& w) const {
   std::vector<CrossingNode> result;
-  const auto add = [&](const Vec3& from, const Vec3& normal, double weight) {
+  const auto add = [&](const Vec3& from, const Vec3& normal, double weight, const Rgb& passing = {}) {
     const double cosine = std::clamp(dot(from, normal), 0.0, 1.0);
     if (const auto inside = geometry_.cross(from, normal))
-      result.push_back({cosine, inside->direction.z, weight * inside->share});
+      result.push_back({cosine, inside->direction.z, weight * inside->share, passing});
   };
   if (w.z <= 0 || material_.is_opaque()) return result;
-  if (geometry_.is_smooth())
-    add(w, {0, 0, 1}, 1);
-  else
+  const auto transmittance = [&](double cosine) { return power(cosine).transmittance; };
+  if (geometry_.is_smooth()) {
+    add(w, {0, 0, 1}, 1, transmittance(w.z));
+  } else if (film_.is_layered()) {
+    const Vec3 from = turned(w);
+    for (const FacetRings::Node& node : rings(from).crossing(transmittance))
+      add(from, node.normal, node.weight, node.power);
+  } else {
     visit_visible(w, false, add);
+  }
   return result;
 }
 
 Rgb FilmIntegrals::first_albedo(const Vec3& w) const {
   if (w.z <= 0) return {};
-  if (geometry_.is_smooth()) return power(w.z).reflectance;
+  const auto reflectance = [&](double cosine) { return power(cosine).reflectance; };
+  if (geometry_.is_smooth()) return reflectance(w.z);
   Rgb sum;
+  const auto add = [&](const Vec3& from, const Vec3& normal, double weight, const Rgb& mirrored) {
+    if (const auto up = geometry_.mirror(from, normal)) sum += mirrored * up->share * weight;
+  };
+  if (film_.is_layered()) {
+    const Vec3 from = turned(w);
+    for (const FacetRings::Node& node : rings(from).mirroring(reflectance))
+      add(from, node.normal, node.weight, node.power);
+    return sum;
+  }
   visit_visible(w, true, [&](const Vec3& from, const Vec3& normal, double weight) {
-    if (const auto up = geometry_.mirror(from, normal))
-      sum += power(std::clamp(dot(from, normal), 0.0, 1.0)).reflectance * up->share * weight;
+    add(from, normal, weight, reflectance(std::clamp(dot(from, normal), 0.0, 1.0)));
   });
   return sum;
 }

@@ -27,11 +27,12 @@ struct ExactResolution {
   int visible = 28;    // normals visible from one direction: polar, and 3/4 of it a panel of azimuths
 };
 
-// Describes a way through the film to the base, whatever the wavelength.
+// Describes a way through the film to the base, whatever the wavelength unless the film is layered.
 struct CrossingNode {
   double facet_cosine;  // outside
   double cosine;        // below, as the light arrives at the base
   double share;         // of the power if the film lets all through
+  Rgb passing;          // transmittance; of a rough layered film its share of an integral over many facets
 };
 
 class FilmIntegrals {
@@ -47,7 +48,9 @@ class FilmIntegrals {
   // of this object; there are none under total reflection or over an opaque base. p_t(w -> m) dm is share
   // times transmittance() at m.z = cosine.
   std::vector<CrossingNode> crossings(const Vec3& w) const;
-  Rgb transmittance(const CrossingNode& crossing) const { return power(crossing.facet_cosine).transmittance; }
+  Rgb transmittance(const CrossingNode& crossing) const {
+    return film_.is_layered() ? crossing.passing : power(crossing.facet_cosine).transmittance;
+  }
 
   Rgb facet_reflectance(double facet_cosine) const { return power(facet_cosine).reflectance; }
   // Returns the directional albedo of the first surface, a smooth film's Dirac included.
@@ -76,6 +79,8 @@ class FilmIntegrals {
   FilmPower power(double facet_cosine) const { return film_.at(walk::Side::outside, facet_cosine); }
   double phase(walk::Side side, double cosine) const;
   int visible_nodes() const;
+  Vec3 turned(const Vec3& w) const;
+  FacetRings rings(const Vec3& w) const;
   int oscillation_panels(walk::Side side, double low, double high) const;
   template <class F>
   void visit_oscillations(walk::Side side, double low, double high, F visit) const;

@@ -7,6 +7,7 @@ namespace sunbeam {
 namespace {
 
 const std::vector<double> kEdges{0, 0.3, 0.62, 0.9, 0.97, 1};
+const FacetRings::Power kUnit = [](double) { return Rgb(1); };
 const double kTilts[] = {0, 0.2, 0.8, 1.3, 1.5};
 
 TEST(FacetRings, AllVisibleNormalsWeighOne) {
@@ -15,11 +16,31 @@ TEST(FacetRings, AllVisibleNormalsWeighOne) {
       const FacetRings::Rules rules(28, roughness);
       const Vec3 w = spherical_direction(tilt, 0.7);
       double sum = 0;
-      for (const auto& [normal, weight] : FacetRings(w, {roughness, 1, 0}, kEdges, rules).crossing()) {
+      for (const auto& [normal, weight, power] :
+           FacetRings(w, {roughness, 1, 0}, kEdges, rules).crossing(kUnit)) {
         EXPECT_GE(normal.z, -1e-12);
-        sum += weight;
+        sum += weight * power.g;
       }
       EXPECT_NEAR(sum, 1, roughness.is_isotropic() ? 1e-5 : 1e-3) << roughness.u << ' ' << tilt;
+    }
+}
+
+// A power that oscillates between edges is integrated by itself: what it is multiplied with is smooth.
+TEST(FacetRings, PowersAreResolvedBetweenEdges) {
+  std::vector<double> edges;
+  for (int k = 0; k <= 400; ++k) edges.push_back(k / 400.0);
+  const FacetRings::Power fringes = [](double cosine) { return Rgb(1 + std::cos(600 * cosine)); };
+  for (const double roughness : {0.05, 0.4})
+    for (const double tilt : kTilts) {
+      const Vec3 w = spherical_direction(tilt, 0);
+      const auto mean = [&](int nodes) {
+        const FacetRings::Rules rules(nodes, roughness);
+        double sum = 0;
+        for (const auto& node : FacetRings(w, {roughness, 1, 0}, edges, rules).crossing(fringes))
+          sum += node.weight * node.power.g;
+        return sum;
+      };
+      EXPECT_NEAR(mean(28), mean(60), 1e-5) << roughness << ' ' << tilt;
     }
 }
 
@@ -30,9 +51,10 @@ TEST(FacetRings, MirroringNormalsLeadUp) {
     for (const double tilt : kTilts) {
       const Vec3 w = spherical_direction(tilt, 0);
       double sum = 0;
-      for (const auto& [normal, weight] : FacetRings(w, {roughness, 1, 0}, kEdges, rules).mirroring()) {
+      for (const auto& [normal, weight, power] :
+           FacetRings(w, {roughness, 1, 0}, kEdges, rules).mirroring(kUnit)) {
         EXPECT_GE(reflect(w, normal).z, -1e-12);
-        sum += weight;
+        sum += weight * power.g;
       }
       EXPECT_LE(sum, 1 + 1e-5);
       EXPECT_GT(sum, roughness < 0.1 && tilt < 1 ? 0.99 : 0.4);
@@ -45,7 +67,8 @@ TEST(FacetRings, CrossingNormalsLetLightIntoARarerBase) {
   const double ratio = 1.3, critical = std::sqrt(1 - 1 / square(ratio));
   for (const double tilt : kTilts) {
     const Vec3 w = spherical_direction(tilt, 0);
-    for (const auto& [normal, weight] : FacetRings(w, {0.3, ratio, critical}, kEdges, rules).crossing()) {
+    for (const auto& [normal, weight, power] :
+         FacetRings(w, {0.3, ratio, critical}, kEdges, rules).crossing(kUnit)) {
       const double cosine = dot(w, normal), below2 = 1 - square(ratio) * (1 - square(cosine));
       EXPECT_GE(below2, -1e-12);
       EXPECT_GE(ratio * w.z + (std::sqrt(std::max(0.0, below2)) - ratio * cosine) * normal.z, -1e-9);

@@ -11,14 +11,17 @@ namespace {
 // Between edges powers are polynomials of degree 7, and so smooth is what they are multiplied with.
 constexpr int kLeastNodes = 10;
 
-int panels_for(int nodes) { return (nodes - 1) / GaussInterpolation::kMaxCount + 1; }
+// Rings for each node: a mirror may pass light in the tail of D alone.
+constexpr int kRings = 3;
+
+int ceiling(int a, int b) { return (a - 1) / b + 1; }
 
 }  // namespace
 
 // The peak of D follows no simple coordinate of an anisotropic film's rings.
 FacetRings::Rules::Rules(int nodes, const Roughness& roughness)
-    : panels(panels_for(nodes)),
-      panel((nodes - 1) / panels + 1),
+    : panels(ceiling(kRings * nodes, GaussInterpolation::kMaxCount)),
+      panel(ceiling(kRings * nodes, panels)),
       around(gauss_legendre(roughness.is_isotropic() ? nodes : 2 * nodes)) {
   for (int count = nodes;; count /= 2) {
     film.push_back(gauss_legendre(std::max(count, kLeastNodes)));

@@ -25,6 +25,7 @@ struct ExactResolution {
   int cosines = 12;    //         a panel of the direction's cosine with it, at most 24,
   int azimuths = 16;   //         the direction's azimuth about it
   int visible = 28;    // normals visible from one direction: polar, and 3/4 of it a panel of azimuths
+                       // (of a layered film: around half a ring of facets, and 3 times it the rings)
 };
 
 // Describes a way through the film to the base, whatever the wavelength unless the film is layered.

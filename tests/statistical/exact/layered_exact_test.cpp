@@ -134,7 +134,7 @@ TEST(LayeredExact, AbsorbingLayersKeepLess) {
 
 TEST(LayeredExact, Reciprocity) {
   for (const auto& [name, m] : test::all_modes())
-    for (const auto& design : test::film_designs(m)) {
+    for (const auto& design : {test::butterfly(m), test::beetle(m), test::dispersive(m)}) {
       const ExactRest exact = exact_of(design);
       const Vec3 wo = spherical_direction(1.2, 0), wi = spherical_direction(0.3, 2);
       expect_relative(exact.rest(wo, wi), exact.rest(wi, wo), 1e-12, name + design.name);

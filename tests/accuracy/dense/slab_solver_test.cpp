@@ -9,7 +9,7 @@
 #include "bake/optics/quadrature.h"
 #include "sunbeam/core/error.h"
 #include "tests/accuracy/support.h"
-#include "tests/support/film_designs.h"
+#include "tests/support/layered_films.h"
 
 namespace sunbeam {
 namespace {
@@ -134,10 +134,10 @@ TEST(SlabSolver, LayersOfOneFilmAreTheFilm) {
 TEST(SlabSolver, AbsorbingLayersKeepLight) {
   Material material = slab(1.5, 0);
   const auto beetle = test::beetle(material);
-  test::FilmDesign clear = beetle;
+  test::LayeredFilm clear = beetle;
   for (const std::size_t k : {0, 1})
     for (FilmLayer& layer : clear.wavelengths.layers[k]) layer.index = layer.index.real();
-  const auto solve_film = [&](const test::FilmDesign& film) {
+  const auto solve_film = [&](const test::LayeredFilm& film) {
     SlabSolver solver(film.material, kCosines);
     solver.add_depth(0);
     return SlabSolver::Film(solver, film.material.film_thickness_nm, film.wavelengths).rest(0);

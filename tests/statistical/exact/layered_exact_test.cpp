@@ -6,7 +6,7 @@
 #include "bake/optics/film_stack.h"
 #include "sunbeam/core/rng.h"
 #include "tests/support/bsdf_checks.h"
-#include "tests/support/film_designs.h"
+#include "tests/support/layered_films.h"
 #include "tests/support/materials.h"
 #include "tests/support/quadrature.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 const ExactResolution kFine{14, 36, 18, 24, 40};
 
-ExactRest exact_of(const test::FilmDesign& design, const ExactResolution& resolution = {}) {
+ExactRest exact_of(const test::LayeredFilm& design, const ExactResolution& resolution = {}) {
   return ExactRest(design.material, design.wavelengths, resolution);
 }
 
@@ -24,7 +24,7 @@ void expect_relative(const Rgb& value, const Rgb& expected, double tolerance, co
     EXPECT_NEAR(value[c], expected[c], tolerance * std::abs(expected[c])) << what << " channel " << c;
 }
 
-FilmStack stack_of(const test::FilmDesign& design, std::size_t k) {
+FilmStack stack_of(const test::LayeredFilm& design, std::size_t k) {
   const Material& m = design.material;
   return {m.exterior_ior, design.wavelengths.layers[k], m.base_ior, design.wavelengths.film_periods};
 }
@@ -41,7 +41,7 @@ double below(const FilmStack& stack, bool is_straight, double cosine, double nm)
 }
 
 // s kd/pi A(wo) A(wi) / (1 - kd rho) with A and rho by the closed form of the stack.
-double smooth_sum(const test::FilmDesign& design, std::size_t k, double cos_o, double cos_i) {
+double smooth_sum(const test::LayeredFilm& design, std::size_t k, double cos_o, double cos_i) {
   const Material& m = design.material;
   const FilmStack stack = stack_of(design, k);
   const double nm = design.wavelengths.nm[k], tau = m.optical_depth(), kd = design.wavelengths.albedo[k];
@@ -146,7 +146,7 @@ TEST(LayeredExact, Reciprocity) {
 TEST(LayeredExact, AlbedoIsTheIntegralOfRest) {
   for (const auto& [name, m] : test::all_modes()) {
     const auto design = test::beetle(m);
-    test::FilmDesign black = design;
+    test::LayeredFilm black = design;
     black.wavelengths.albedo.assign(3, 0);
     const ExactRest exact = exact_of(design);
     const Vec3 wo = spherical_direction(0.6, 0);
@@ -238,7 +238,7 @@ TEST(LayeredExact, BsdfIsTheExactRest) {
       m.exterior_ior = exterior_ior;
       // Curves of a rough film are dear.
       const bool is_dear = !m.is_smooth();
-      for (const auto& design : is_dear ? std::vector{test::beetle(m)} : test::film_designs(m)) {
+      for (const auto& design : is_dear ? std::vector{test::beetle(m)} : test::layered_films(m)) {
         const ExactRest exact = exact_of(design);
         const ExactBsdf bsdf(design.material, design.wavelengths);
         for (int k = 0; k < 3; ++k) {

@@ -8,7 +8,7 @@
 #include "bake/optics/quadrature.h"
 #include "bake/optics/thin_film.h"
 #include "sunbeam/core/rng.h"
-#include "tests/support/film_designs.h"
+#include "tests/support/layered_films.h"
 
 namespace sunbeam {
 namespace {
@@ -19,7 +19,7 @@ constexpr double kError = 1e-8;  // that the header states
 constexpr std::array kAll{0, 1, 2};
 
 // Written anew: the whole stack at one wavelength, its thicknesses times a factor.
-FilmStack stack_of(const test::FilmDesign& design, std::size_t k, double factor = 1) {
+FilmStack stack_of(const test::LayeredFilm& design, std::size_t k, double factor = 1) {
   const Material& m = design.material;
   const Wavelengths& w = design.wavelengths;
   FilmStack stack{m.exterior_ior, {}, {m.base_ior, m.base_extinction}};
@@ -49,7 +49,7 @@ Powers passing(const FilmStack& stack, Side side, double cos_outside, double nm)
 }
 
 // A normal factor on all thicknesses, cut at three deviations, by many trapezoids.
-Powers mean_passing(const test::FilmDesign& design, std::size_t k, Side side, double cos_outside) {
+Powers mean_passing(const test::LayeredFilm& design, std::size_t k, Side side, double cos_outside) {
   constexpr int kSteps = 3000;
   Powers sum{};
   double weights = 0;
@@ -96,7 +96,7 @@ TEST(FilmCurves, AreTheClosedFormFromOutside) {
   Rng rng(1, 0);
   for (const Transmission transmission : {Transmission::refract, Transmission::straight})
     for (const Material& material : media(transmission))
-      for (const auto& design : test::film_designs(material)) {
+      for (const auto& design : test::layered_films(material)) {
         if (design.material.thickness_spread > 0) continue;
         const FilmCurves curves(design.material, design.wavelengths);
         for (int i = 0; i < 300; ++i) {
@@ -116,7 +116,7 @@ TEST(FilmCurves, AreTheReversedStackFromBelow) {
   Rng rng(2, 0);
   int total = 0;
   for (const Material& material : media(Transmission::refract))
-    for (const auto& design : test::film_designs(material)) {
+    for (const auto& design : test::layered_films(material)) {
       if (design.material.thickness_spread > 0) continue;
       const FilmCurves curves(design.material, design.wavelengths);
       for (int i = 0; i < 300; ++i) {
@@ -142,7 +142,7 @@ TEST(FilmCurves, AreTheReversedStackFromBelow) {
 TEST(FilmCurves, StraightLightFromBelowMeetsTheReversedStackAtTheSameAngle) {
   Rng rng(3, 0);
   for (const Material& material : media(Transmission::straight))
-    for (const auto& design : test::film_designs(material)) {
+    for (const auto& design : test::layered_films(material)) {
       if (design.material.thickness_spread > 0) continue;
       const FilmCurves curves(design.material, design.wavelengths);
       for (int i = 0; i < 300; ++i) {
@@ -233,7 +233,7 @@ TEST(FilmCurves, WavelengthsArePickedByNumber) {
 TEST(FilmCurves, EdgesDivideWherePowersAreSmooth) {
   const GaussRule few = gauss_legendre(8), many = gauss_legendre(60);
   for (const Material& material : media(Transmission::refract))
-    for (const auto& design : test::film_designs(material))
+    for (const auto& design : test::layered_films(material))
       for (const Side side : {Side::outside, Side::inside}) {
         const FilmCurves curves(design.material, design.wavelengths);
         const std::vector<double> edges = curves.edges(side);

@@ -8,15 +8,15 @@
 
 namespace sunbeam::test {
 
-struct FilmDesign {
+struct LayeredFilm {
   std::string name;
   Material material;
   Wavelengths wavelengths;
 };
 
 // The layers are those of one period; the film is as thick as all of them.
-inline FilmDesign film_design(const std::string& name, Material material,
-                              const std::vector<FilmLayer>& layers, int periods = 1) {
+inline LayeredFilm layered_film(const std::string& name, Material material,
+                                const std::vector<FilmLayer>& layers, int periods = 1) {
   Wavelengths wavelengths = Wavelengths::rgb3(material);
   wavelengths.layers.assign(wavelengths.size(), layers);
   wavelengths.film_periods = periods;
@@ -31,41 +31,41 @@ inline Wavelengths two_halves(const Material& material, Wavelengths wavelengths)
   return wavelengths;
 }
 
-inline FilmDesign clear_mirror(const Material& material) {
-  return film_design("clear mirror", material, {{90, 1.45}, {60, 2.3}}, 12);
+inline LayeredFilm clear_mirror(const Material& material) {
+  return layered_film("clear mirror", material, {{90, 1.45}, {60, 2.3}}, 12);
 }
-inline FilmDesign butterfly(const Material& material) {
-  return film_design("chitin and air", material, {{80, 1.56}, {95, 1}}, 6);
+inline LayeredFilm butterfly(const Material& material) {
+  return layered_film("chitin and air", material, {{80, 1.56}, {95, 1}}, 6);
 }
-inline FilmDesign beetle(const Material& material) {
-  return film_design("chitin and melanin", material, {{80, 1.56}, {70, {1.7, 0.05}}}, 8);
+inline LayeredFilm beetle(const Material& material) {
+  return layered_film("chitin and melanin", material, {{80, 1.56}, {70, {1.7, 0.05}}}, 8);
 }
-inline FilmDesign silver_cavity(const Material& material) {
-  return film_design("silver cavity", material, {{25, {0.06, 3.5}}, {300, 1.5}, {20, {0.06, 3.5}}});
+inline LayeredFilm silver_cavity(const Material& material) {
+  return layered_film("silver cavity", material, {{25, {0.06, 3.5}}, {300, 1.5}, {20, {0.06, 3.5}}});
 }
-inline FilmDesign uneven_platelets(Material material) {
+inline LayeredFilm uneven_platelets(Material material) {
   material.thickness_spread = 0.1;
-  return film_design("uneven platelets", material, {{90, 1.68}, {60, 1.33}}, 4);
+  return layered_film("uneven platelets", material, {{90, 1.68}, {60, 1.33}}, 4);
 }
-inline FilmDesign dispersive(const Material& material) {
-  FilmDesign design = film_design("dispersive", material, {{200, 1.6}, {150, {1.9, 0.02}}});
+inline LayeredFilm dispersive(const Material& material) {
+  LayeredFilm design = layered_film("dispersive", material, {{200, 1.6}, {150, {1.9, 0.02}}});
   design.wavelengths.layers[2][0].index = 1.65;
   design.wavelengths.base_index = {material.base_ior - 0.02, material.base_ior, material.base_ior + 0.03};
   return design;
 }
 // An oxide on a metal.
-inline FilmDesign opaque(Material material) {
+inline LayeredFilm opaque(Material material) {
   material.base_ior = 2.2;
   material.base_extinction = 3;
   material.albedo = Rgb(0);
   material.absorption_per_nm = 0;
-  FilmDesign design = film_design("oxide on metal", material, {{120, 2.4}, {30, {1.8, 0.1}}});
+  LayeredFilm design = layered_film("oxide on metal", material, {{120, 2.4}, {30, {1.8, 0.1}}});
   design.wavelengths.base_index = {{2.6, 3.4}, {2.2, 3}, {2, 2.7}};
   return design;
 }
 
 // Those on a clear base.
-inline std::vector<FilmDesign> film_designs(const Material& material) {
+inline std::vector<LayeredFilm> layered_films(const Material& material) {
   return {clear_mirror(material),  butterfly(material),        beetle(material),
           silver_cavity(material), uneven_platelets(material), dispersive(material)};
 }

@@ -133,7 +133,7 @@ std::vector<CrossingNode> FilmIntegrals::crossings(const Vec3& w) const {
   if (w.z <= 0 || material_.is_opaque()) return result;
   const auto transmittance = [&](double cosine) { return power(cosine).transmittance; };
   if (geometry_.is_smooth()) {
-    add(w, {0, 0, 1}, 1, transmittance(w.z));
+    add(w, {0, 0, 1}, 1, film_.is_layered() ? transmittance(w.z) : Rgb());
   } else if (film_.is_layered()) {
     const Vec3 from = turned(w);
     for (const FacetRings::Node& node : rings(from).crossing(transmittance))

@@ -33,7 +33,7 @@ struct CrossingNode {
   double facet_cosine;  // outside
   double cosine;        // below, as the light arrives at the base
   double share;         // of the power if the film lets all through
-  Rgb passing;          // transmittance; of a rough layered film its share of an integral over many facets
+  Rgb passing;          // of a layered film: the transmittance, or its part of an integral over rough facets
 };
 
 class FilmIntegrals {

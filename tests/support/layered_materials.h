@@ -12,7 +12,7 @@
 namespace sunbeam::test {
 
 // A film and the base that it lies on. Both may depend on the wavelength, nm.
-struct FilmDesign {
+struct LayeredDesign {
   std::string name;
   std::function<std::vector<FilmLayer>(double)> layers;  // of one period, from top to bottom
   int periods = 1;
@@ -23,16 +23,16 @@ struct FilmDesign {
 // An index of Cauchy's, n = a + b / lambda^2 with lambda in micrometres.
 inline double cauchy(double a, double b, double nm) { return a + b * 1e6 / (nm * nm); }
 
-inline FilmDesign clear_design() {
+inline LayeredDesign clear_design() {
   return {"clear", [](double) { return std::vector<FilmLayer>{{60, 2.2}, {90, 1.4}}; }, 2};
 }
-inline FilmDesign uneven_design() {
-  FilmDesign design = clear_design();
+inline LayeredDesign uneven_design() {
+  LayeredDesign design = clear_design();
   design.name = "uneven";
   design.spread = 0.2;
   return design;
 }
-inline FilmDesign dispersive_design() {
+inline LayeredDesign dispersive_design() {
   return {"dispersive",
           [](double nm) {
             return std::vector<FilmLayer>{{80, cauchy(1.7, 0.02, nm)}, {110, cauchy(1.33, 0.004, nm)}};
@@ -40,25 +40,25 @@ inline FilmDesign dispersive_design() {
           2, [](double nm) { return std::complex<double>(cauchy(1.25, 0.01, nm)); }};
 }
 // Chitin and melanin, which absorbs more at short wavelengths.
-inline FilmDesign absorbing_design() {
+inline LayeredDesign absorbing_design() {
   return {"absorbing",
           [](double nm) {
             return std::vector<FilmLayer>{{90, 1.56}, {70, {1.7, 0.06 * 510 / nm}}};
           },
           2};
 }
-inline FilmDesign uneven_absorbing_design() {
-  FilmDesign design = absorbing_design();
+inline LayeredDesign uneven_absorbing_design() {
+  LayeredDesign design = absorbing_design();
   design.name = "uneven absorbing";
   design.spread = 0.15;
   return design;
 }
 // A thin metal under a dark layer: from above it absorbs most, from below it reflects.
-inline FilmDesign leaf_design() {
+inline LayeredDesign leaf_design() {
   return {"leaf", [](double) { return std::vector<FilmLayer>{{40, {1.9, 0.5}}, {14, {0.3, 3}}}; }};
 }
 // An oxide on a metal.
-inline FilmDesign oxide_design() {
+inline LayeredDesign oxide_design() {
   return {"oxide",
           [](double) {
             return std::vector<FilmLayer>{{120, 2.4}};
@@ -66,7 +66,7 @@ inline FilmDesign oxide_design() {
           1, [](double nm) { return std::complex<double>(cauchy(1.6, 0.2, nm), 2.9); }};
 }
 // A dark oxide of uneven thickness: what it does not reflect is absorbed in it or below.
-inline FilmDesign dark_oxide_design() {
+inline LayeredDesign dark_oxide_design() {
   return {"dark oxide",
           [](double) {
             return std::vector<FilmLayer>{{60, {2.3, 0.2}}, {30, 1.5}};
@@ -74,16 +74,16 @@ inline FilmDesign dark_oxide_design() {
           2, [](double) { return std::complex<double>(0.3, 3.5); }, 0.1};
 }
 
-inline std::vector<FilmDesign> clear_designs() {
+inline std::vector<LayeredDesign> clear_designs() {
   return {clear_design(), uneven_design(), dispersive_design()};
 }
-inline std::vector<FilmDesign> absorbing_designs() {
+inline std::vector<LayeredDesign> absorbing_designs() {
   return {absorbing_design(), uneven_absorbing_design(), leaf_design()};
 }
-inline std::vector<FilmDesign> opaque_designs() { return {oxide_design(), dark_oxide_design()}; }
+inline std::vector<LayeredDesign> opaque_designs() { return {oxide_design(), dark_oxide_design()}; }
 
 // The wavelengths with this film at each.
-inline Wavelengths layered(const FilmDesign& design, Wavelengths w) {
+inline Wavelengths layered(const LayeredDesign& design, Wavelengths w) {
   w.film_periods = design.periods;
   for (const double nm : w.nm) {
     w.layers.push_back(design.layers(nm));
@@ -93,7 +93,7 @@ inline Wavelengths layered(const FilmDesign& design, Wavelengths w) {
 }
 
 // The material with this film. Over an opaque base it has no pigment.
-inline Configuration with_film(const FilmDesign& design, const NamedMaterial& bare) {
+inline Configuration with_film(const LayeredDesign& design, const NamedMaterial& bare) {
   Material m = bare.material;
   m.film_thickness_nm = 0;
   for (const FilmLayer& layer : design.layers(510))
@@ -110,10 +110,10 @@ inline Configuration with_film(const FilmDesign& design, const NamedMaterial& ba
   return {design.name + " " + bare.name, m, layered(design, Wavelengths::rgb3(m))};
 }
 
-inline std::vector<Configuration> with_films(const std::vector<FilmDesign>& designs,
+inline std::vector<Configuration> with_films(const std::vector<LayeredDesign>& designs,
                                              const std::vector<NamedMaterial>& materials) {
   std::vector<Configuration> result;
-  for (const FilmDesign& design : designs)
+  for (const LayeredDesign& design : designs)
     for (const NamedMaterial& material : materials) result.push_back(with_film(design, material));
   return result;
 }

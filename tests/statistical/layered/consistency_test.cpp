@@ -36,7 +36,7 @@ TEST(LayeredConsistency, EvalIsReciprocal) {
 
 // Films that absorb and films that do not, over opaque bases and others, on surfaces of every kind.
 std::vector<test::Configuration> sampled_configurations() {
-  const auto on = [](const test::FilmDesign& design, const std::vector<std::string>& names) {
+  const auto on = [](const test::LayeredDesign& design, const std::vector<std::string>& names) {
     std::vector<test::NamedMaterial> surfaces;
     for (const auto& surface : test::film_surfaces({0.9, 0.8, 0.6}, 0.1))
       if (std::ranges::find(names, surface.name) != names.end()) surfaces.push_back(surface);

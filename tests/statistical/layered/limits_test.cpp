@@ -20,7 +20,7 @@ const Vec3 kOblique = spherical_direction(0.9, 0.4), kSteep = spherical_directio
 using Layers = std::vector<FilmLayer>;
 
 // Ways to write a single layer of 240 nm and index 1.7.
-std::vector<test::FilmDesign> written_otherwise() {
+std::vector<test::LayeredDesign> written_otherwise() {
   return {{"two halves",
            [](double) {
              return Layers{{120, 1.7}, {120, 1.7}};

@@ -148,7 +148,7 @@ TEST(LayeredLimits, FringesFadeWithSpread) {
     m.thickness_spread = spread;
     Wavelengths w = Wavelengths::rgb3(m);
     std::vector<double> result;
-    for (double nm = 500; nm < 600; nm += 2) {
+    for (double nm = 500; nm < 600; nm += 5) {
       w.nm = {nm, nm, nm};
       result.push_back(Pfmc(m, w).film_reflectance(0.8).g);
     }

@@ -35,7 +35,7 @@ TEST(LongLayeredStatedErrors, HoldForAlbedos) {
 
 // The quick version over other materials; some sixty scores tell the deviation to 0.1.
 TEST(LayeredStatedErrors, HoldForEveryPairOfEstimators) {
-  test::expect_normal(test::compare_rests(draw_cases(200, 12), 1500), 50, 0, 0.3);
+  test::expect_normal(test::compare_rests(draw_cases(200, 20), 1500), 50, 0, 0.3);
 }
 
 }  // namespace

@@ -57,6 +57,10 @@ inline LayeredDesign uneven_absorbing_design() {
 inline LayeredDesign leaf_design() {
   return {"leaf", [](double) { return std::vector<FilmLayer>{{40, {1.9, 0.5}}, {14, {0.3, 3}}}; }};
 }
+// So much metal that about nothing comes through.
+inline LayeredDesign mirror_design() {
+  return {"mirror", [](double) { return std::vector<FilmLayer>{{300, {0.06, 3.5}}}; }};
+}
 // An oxide on a metal.
 inline LayeredDesign oxide_design() {
   return {"oxide",

@@ -69,6 +69,17 @@ void Spectrum::require_served(const Material& material) const {
                 to_text(served_path_nm_ / film_.path_nm(material, 1)) + " nm");
 }
 
+Wavelengths Spectrum::with_film(const Material& material, Wavelengths wavelengths) const {
+  film_.fill(wavelengths);
+  const double path = film_.path_nm(material, material.film_thickness_nm);
+  const double longest = resolved_path_nm(kMostWavelengths);
+  if (path > longest && film_.is_layered(material))
+    throw Error("key 'film_thickness_nm': found " + to_text(material.film_thickness_nm) +
+                "; allowed of a layered film: up to " + to_text(longest / film_.path_nm(material, 1)) +
+                " nm");
+  return wavelengths;
+}
+
 Wavelengths Spectrum::full_wavelengths(const Material& material) const {
   const SpectralCurve albedo = albedo_curve(material.albedo);
   Wavelengths w;
@@ -83,9 +94,7 @@ Wavelengths Spectrum::full_wavelengths(const Material& material) const {
 
 Wavelengths Spectrum::wavelengths(const Material& material) const {
   require_served(material);
-  Wavelengths w = is_full() ? full_wavelengths(material) : Wavelengths::rgb3(material);
-  film_.fill(w);
-  return w;
+  return with_film(material, is_full() ? full_wavelengths(material) : Wavelengths::rgb3(material));
 }
 
 Wavelengths Spectrum::monochromatic(const Material& material, double nm) const {
@@ -94,8 +103,7 @@ Wavelengths Spectrum::monochromatic(const Material& material, double nm) const {
     w.albedo = {interpolate(albedo_curve(material.albedo), nm)};
     w.absorption = {absorption_(nm)};
   }
-  film_.fill(w);
-  return w;
+  return with_film(material, std::move(w));
 }
 
 std::map<std::string, std::string> Spectrum::attributes() const {

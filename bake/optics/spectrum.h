@@ -72,6 +72,7 @@ class Spectrum {
  private:
   SpectralCurve albedo_curve(const Rgb& albedo) const;
   void require_served(const Material& material) const;
+  Wavelengths with_film(const Material& material, Wavelengths wavelengths) const;
   Wavelengths full_wavelengths(const Material& material) const;
 
   Illuminant illuminant_ = Illuminant::d65;

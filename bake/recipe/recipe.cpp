@@ -101,16 +101,16 @@ Thickest thickest_film(const ConfigTable& grid_config, const ConfigTable& materi
   return {in_material, material_config, thickness_key(material_config)};
 }
 
-// The thickest film has to be resolved by kMostWavelengths wavelengths.
+// The thickest film has to be resolved by kMostWavelengths wavelengths; a layered one whatever the mode.
 double longest_path(const Thickest& thickest, const Material& material, const FilmDesign& film) {
   const double path = film.path_nm(material, thickest.nm), longest = resolved_path_nm(kMostWavelengths);
   if (path > longest)
-    thickest.config.fail(
-        thickest.key,
-        fmt::format("found {:g}; allowed with spectrum.mode \"full\" and {}: up to {:g}", thickest.nm,
-                    film.layers.empty() ? fmt::format("film_ior {:g}", material.film_ior)
-                                        : "the indices of its layers",
-                    std::floor(longest / film.path_nm(material, 1))));
+    thickest.config.fail(thickest.key,
+                         fmt::format("found {:g}; allowed with {}{}: up to {:g}", thickest.nm,
+                                     film.is_layered(material) ? "" : "spectrum.mode \"full\" and ",
+                                     film.layers.empty() ? fmt::format("film_ior {:g}", material.film_ior)
+                                                         : "the indices of its layers",
+                                     std::floor(longest / film.path_nm(material, 1))));
   return path;
 }
 
@@ -152,6 +152,8 @@ Spectrum read_spectrum(const ConfigTable& config, const ConfigTable& material, c
   if (config.choice("mode", {"rgb3", "full"}, 0) == 0) {
     for (const char* key : {"illuminant", "color_space"}) refuse_outside_full(config, key);
     refuse_outside_full(material, kAbsorptionSpectrum);
+    if (film.is_layered(recipe.material))
+      longest_path(thickest_film(grid, material, recipe), recipe.material, film);
     Spectrum spectrum;
     spectrum.set_film(film, 0);
     return spectrum;

@@ -32,6 +32,11 @@ struct FilmDesign {
 
   bool operator==(const FilmDesign&) const = default;
 
+  // Says whether film and base are more than one clear layer of constant index on a clear base.
+  bool is_layered(const Material& material) const {
+    return *this != FilmDesign() || material.is_opaque() || material.thickness_spread > 0;
+  }
+
   // Returns the thickness of all layers in all periods.
   double thickness_nm() const;
 

@@ -16,13 +16,18 @@ constexpr int kRings = 3;
 
 int ceiling(int a, int b) { return (a - 1) / b + 1; }
 
+// Nodes around for each node: the peak of D follows no simple coordinate of an anisotropic film's rings.
+int around_for(const Roughness& roughness) {
+  const auto [low, high] = std::minmax(roughness.u, roughness.v);
+  return static_cast<int>(std::ceil(std::sqrt(high / low)));
+}
+
 }  // namespace
 
-// The peak of D follows no simple coordinate of an anisotropic film's rings.
 FacetRings::Rules::Rules(int nodes, const Roughness& roughness)
     : panels(ceiling(kRings * nodes, GaussInterpolation::kMaxCount)),
       panel(ceiling(kRings * nodes, panels)),
-      around(gauss_legendre(roughness.is_isotropic() ? nodes : 2 * nodes)) {
+      around(gauss_legendre(nodes * around_for(roughness))) {
   for (int count = nodes;; count /= 2) {
     film.push_back(gauss_legendre(std::max(count, kLeastNodes)));
     if (count <= kLeastNodes) return;

@@ -21,9 +21,14 @@ WavelengthQuadrature quadrature_for(Illuminant illuminant, ColorSpace color_spac
 
 Spectrum::Spectrum(Illuminant illuminant, ColorSpace color_space, double longest_path_nm,
                    AbsorptionShape absorption)
+    : Spectrum(illuminant, color_space, quadrature_for(illuminant, color_space, longest_path_nm),
+               std::move(absorption)) {}
+
+Spectrum::Spectrum(Illuminant illuminant, ColorSpace color_space, WavelengthQuadrature quadrature,
+                   AbsorptionShape absorption)
     : illuminant_(illuminant),
       color_space_(color_space),
-      quadrature_(quadrature_for(illuminant, color_space, longest_path_nm)),
+      quadrature_(std::move(quadrature)),
       served_path_nm_(resolved_path_nm(quadrature_.size())),
       absorption_(std::move(absorption)) {}
 

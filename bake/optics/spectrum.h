@@ -35,6 +35,11 @@ class Spectrum {
   Spectrum(Illuminant illuminant, ColorSpace color_space, double longest_path_nm,
            AbsorptionShape absorption = AbsorptionShape::flat());
 
+  // Makes the spectrum "full" at the nodes of a quadrature of the illuminant and the space, which has 1 to
+  // kMostWavelengths of them.
+  Spectrum(Illuminant illuminant, ColorSpace color_space, WavelengthQuadrature quadrature,
+           AbsorptionShape absorption = AbsorptionShape::flat());
+
   // Sets the design of film and base. In full served_path_nm is the longest path 2 sum(n d) that the
   // wavelengths are meant for, if they resolve it.
   void set_film(FilmDesign film, double served_path_nm);

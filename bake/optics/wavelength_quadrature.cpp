@@ -7,8 +7,6 @@
 namespace sunbeam {
 namespace {
 
-constexpr double kFirstNodeNm = 395, kLastNodeNm = 720;
-
 // Fringes of orders 2 to 4 are much weaker than the first: each order counts this much less than the one
 // before in the squared error. They keep the fit from running wild beyond the longest path.
 constexpr int kOrders = 4;
@@ -35,10 +33,10 @@ double mean_cosine(double largest, double t) {
 }
 
 // Wave numbers 1 / lambda of the nodes, 1/nm.
-std::vector<double> node_wave_numbers(int nodes) {
+std::vector<double> node_wave_numbers(int nodes, const NodeRange& range) {
   std::vector<double> wave_number(nodes);
   for (int k = 0; k < nodes; ++k)
-    wave_number[k] = lerp(static_cast<double>(k) / (nodes - 1), 1 / kLastNodeNm, 1 / kFirstNodeNm);
+    wave_number[k] = lerp(static_cast<double>(k) / (nodes - 1), 1 / range.last_nm, 1 / range.first_nm);
   return wave_number;
 }
 
@@ -96,13 +94,14 @@ int nodes_for_path(double largest_path_nm) {
   return std::max(16, 4 * static_cast<int>(std::ceil(nodes / 4)));
 }
 
-WavelengthQuadrature fitted(Illuminant illuminant, ColorSpace space, int nodes, double largest_path_nm) {
+WavelengthQuadrature fitted(Illuminant illuminant, ColorSpace space, int nodes, double largest_path_nm,
+                            const NodeRange& range) {
   if (nodes < 2 || nodes > 256)
     throw Error("spectrum: " + std::to_string(nodes) + " wavelengths; allowed are 2 to 256");
   if (!(largest_path_nm > 0 && largest_path_nm <= 1e6))
     throw Error("spectrum: largest path " + std::to_string(largest_path_nm) + " nm; allowed are 0 to 1e6");
   const WavelengthQuadrature reference = brute_force(illuminant, space);
-  const std::vector<double> wave_number = node_wave_numbers(nodes);
+  const std::vector<double> wave_number = node_wave_numbers(nodes, range);
   WavelengthQuadrature q;
   for (const double wave : wave_number) q.wavelength_nm.push_back(1 / wave);
   q.weight.resize(nodes);

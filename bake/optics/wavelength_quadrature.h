@@ -51,13 +51,22 @@ inline constexpr double kDefaultLargestPathNm = 5400;
 // measured choice: a multiple of 4, at least 16.
 int nodes_for_path(double largest_path_nm);
 
-// Returns `nodes` wavelengths uniform in 1 / lambda from 395 to 720 nm. Per channel the weights minimise the
+// Holds the wavelengths of the first and the last node.
+struct NodeRange {
+  double first_nm, last_nm;
+
+  bool operator==(const NodeRange&) const = default;
+};
+inline constexpr NodeRange kNodeRange{395, 720};  // is among the best for one clear film
+
+// Returns `nodes` wavelengths uniform in 1 / lambda over the range. Per channel the weights minimise the
 // squared error against brute_force() of cos(2 pi x / lambda) and sin(2 pi x / lambda), integrated over
 // optical paths x from 0 to `largest_path_nm`, under the constraint that a constant comes out exact. The
 // fringes of order m of a film are such waves with x = 2 m n1 d0 cos(theta1); give the longest path of order
 // 1, orders 2 to 4 are added inside with small weights.
 WavelengthQuadrature fitted(Illuminant illuminant, ColorSpace space, int nodes = kDefaultNodes,
-                            double largest_path_nm = kDefaultLargestPathNm);
+                            double largest_path_nm = kDefaultLargestPathNm,
+                            const NodeRange& range = kNodeRange);
 
 // Solves a dense linear system, row after row in `matrix`, by elimination with partial pivoting. Returns
 // false when it is singular; else `rhs` becomes the solution.

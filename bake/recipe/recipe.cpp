@@ -119,10 +119,11 @@ FilmNodes measured_nodes(const Thickest& thickest, const Material& material, con
                          Illuminant illuminant, ColorSpace space) {
   const FilmNodes nodes = nodes_for_film(material, film, illuminant, space, thickest.nm);
   if (nodes.error > kMostFoldingError)
-    thickest.config.fail(thickest.key,
-                         fmt::format("found a film of {:g} nm, of whose colours one in a hundred is off by "
-                                     "{:.2g} % or more at {} wavelengths; allowed: up to {:g} %",
-                                     thickest.nm, 100 * nodes.error, nodes.count, 100 * kMostFoldingError));
+    thickest.config.fail(
+        thickest.key,
+        fmt::format("found a film of {:g} nm, of whose colours one in a hundred is off by "
+                    "{:.2g} % or more at {} wavelengths; allowed: up to {:g} %",
+                    thickest.nm, 100 * nodes.error, nodes.quadrature.size(), 100 * kMostFoldingError));
   return nodes;
 }
 
@@ -166,8 +167,7 @@ Spectrum read_spectrum(const ConfigTable& config, const ConfigTable& material, c
   if (film == FilmDesign() && !recipe.material.is_opaque())
     return Spectrum(illuminant, space, path, read_absorption_shape(material));
   const FilmNodes nodes = measured_nodes(thickest, recipe.material, film, illuminant, space);
-  Spectrum spectrum(illuminant, space, resolved_path_nm(static_cast<std::size_t>(nodes.count)),
-                    read_absorption_shape(material));
+  Spectrum spectrum(illuminant, space, nodes.quadrature, read_absorption_shape(material));
   spectrum.set_film(film, nodes.path_nm);
   return spectrum;
 }

@@ -9,6 +9,9 @@
 namespace sunbeam {
 namespace {
 
+// Steep edges and metals have more at the ends of the visible than fringes have.
+constexpr NodeRange kWideRange{385, 760};
+
 constexpr int kAngles = 33, kThicknesses = 8;
 
 // How much thicker the film is at each further step.
@@ -53,10 +56,33 @@ double folding_error(const std::vector<Rgb>& found, const std::vector<Rgb>& refe
   return *p99;
 }
 
-std::vector<double> thicknesses_up_to(double thickest_nm) {
-  std::vector<double> thicknesses;
-  for (int k = 1; k <= kThicknesses; ++k) thicknesses.push_back(thickest_nm * k / kThicknesses);
-  return thicknesses;
+bool is_good(double error) { return error <= kMostFoldingError; }
+
+// Tries both ranges with so many nodes.
+FilmNodes measured(const Film& film, Illuminant illuminant, ColorSpace space, int count,
+                   const std::vector<double>& thicknesses_nm, const std::vector<Rgb>& exact) {
+  FilmNodes nodes{};
+  for (const NodeRange& range : {kNodeRange, kWideRange}) {
+    nodes.quadrature =
+        fitted(illuminant, space, count, resolved_path_nm(static_cast<std::size_t>(count)), range);
+    nodes.error = folding_error(film.folded(nodes.quadrature, thicknesses_nm), exact);
+    if (is_good(nodes.error)) break;
+  }
+  return nodes;
+}
+
+// Returns how thick the film may be, from a thickness for which the nodes are good.
+double served_nm(const Film& film, const WavelengthQuadrature& nodes, const WavelengthQuadrature& reference,
+                 double thickness_nm) {
+  const double path_per_nm = film.design.path_nm(film.material, 1);
+  const double resolved = path_per_nm > 0 ? resolved_path_nm(nodes.size()) / path_per_nm : 0;
+  double served = std::max(thickness_nm, 1.0);
+  while (served < resolved) {
+    const double next = std::min(served * kStep, resolved);
+    if (!is_good(folding_error(film.folded(nodes, {next}), film.folded(reference, {next})))) break;
+    served = next;
+  }
+  return served;
 }
 
 }  // namespace
@@ -65,26 +91,18 @@ FilmNodes nodes_for_film(const Material& material, const FilmDesign& design, Ill
                          ColorSpace space, double thickest_nm) {
   Film film{material, design};
   film.material.thickness_spread = 0;
+  std::vector<double> thicknesses;
+  for (int k = 1; k <= kThicknesses; ++k) thicknesses.push_back(thickest_nm * k / kThicknesses);
   const WavelengthQuadrature reference = brute_force(illuminant, space);
-  const std::vector<double> thicknesses = thicknesses_up_to(thickest_nm);
   const std::vector<Rgb> exact = film.folded(reference, thicknesses);
-  FilmNodes nodes{nodes_for_path(design.path_nm(material, thickest_nm)), 0, 0};
-  WavelengthQuadrature quadrature;
-  for (;; nodes.count += 4) {
-    quadrature = fitted(illuminant, space, nodes.count, resolved_path_nm(nodes.count));
-    nodes.error = folding_error(film.folded(quadrature, thicknesses), exact);
-    if (nodes.error <= kMostFoldingError || nodes.count + 4 > static_cast<int>(kMostWavelengths)) break;
+  int count = nodes_for_path(design.path_nm(material, thickest_nm));
+  FilmNodes nodes = measured(film, illuminant, space, count, thicknesses, exact);
+  while (!is_good(nodes.error) && count + 4 <= static_cast<int>(kMostWavelengths)) {
+    count += 4;
+    nodes = measured(film, illuminant, space, count, thicknesses, exact);
   }
-  double served_nm = std::max(thickest_nm, 1.0);
-  const double path_per_nm = design.path_nm(material, 1);
-  const double resolved_nm = path_per_nm > 0 ? resolved_path_nm(nodes.count) / path_per_nm : 0;
-  while (nodes.error <= kMostFoldingError && served_nm < resolved_nm) {
-    const double next_nm = std::min(served_nm * kStep, resolved_nm);
-    const double error = folding_error(film.folded(quadrature, {next_nm}), film.folded(reference, {next_nm}));
-    if (error > kMostFoldingError) break;
-    served_nm = next_nm;
-  }
-  nodes.path_nm = design.path_nm(material, served_nm);
+  if (is_good(nodes.error))
+    nodes.path_nm = design.path_nm(material, served_nm(film, nodes.quadrature, reference, thickest_nm));
   return nodes;
 }
 

@@ -98,7 +98,7 @@ struct Figures {
 
 // Errors at angles and thicknesses other than those that chose the nodes.
 void add_errors(Case c, const FilmNodes& nodes, double thickest_nm, Rng& rng, std::vector<double>& errors) {
-  Spectrum spectrum(Illuminant::d65, kSpace, resolved_path_nm(static_cast<std::size_t>(nodes.count)));
+  Spectrum spectrum(Illuminant::d65, kSpace, nodes.quadrature);
   spectrum.set_film(c.film, nodes.path_nm);
   for (int k = 0; k < 8; ++k) {
     c.material.film_thickness_nm = thickest_nm * rng.uniform();
@@ -122,7 +122,7 @@ Figures measure(Case (*draw)(Rng&), double spread) {
       ++figures.refused;
       continue;
     }
-    figures.nodes.push_back(nodes.count);
+    figures.nodes.push_back(static_cast<double>(nodes.quadrature.size()));
     figures.by_rule.push_back(nodes_for_path(path));
     add_errors(c, nodes, thickest_nm, rng, figures.errors);
   }

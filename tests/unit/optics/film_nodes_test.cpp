@@ -19,10 +19,10 @@ TEST(FilmNodes, ServeThicknessesUpToTheRefusal) {
   Case c;
   c.film.layers = {{1, OpticalIndex::named("chitin")}};
   const FilmNodes nodes = nodes_for_film(c.material, c.film, Illuminant::d65, kSpace, 300);
-  EXPECT_EQ(nodes.count, 16);
+  EXPECT_EQ(nodes.quadrature.size(), 16u);
   EXPECT_GT(nodes.path_nm, c.film.path_nm(c.material, 300));
   EXPECT_LE(nodes.path_nm, resolved_path_nm(16));
-  Spectrum spectrum(Illuminant::d65, kSpace, resolved_path_nm(16));
+  Spectrum spectrum(Illuminant::d65, kSpace, nodes.quadrature);
   spectrum.set_film(c.film, nodes.path_nm);
   c.material.film_thickness_nm = nodes.path_nm / c.film.path_nm(c.material, 1) * (1 - 1e-12);
   EXPECT_NO_THROW(spectrum.wavelengths(c.material));
@@ -42,14 +42,14 @@ TEST(FilmNodes, TakeMoreThanTheRuleWhereReflectionsAreStrong) {
   const Case c = reflector(2, 5);
   const double thickness = c.film.thickness_nm();
   const FilmNodes nodes = nodes_for_film(c.material, c.film, Illuminant::d65, kSpace, thickness);
-  EXPECT_GT(nodes.count, nodes_for_path(c.film.path_nm(c.material, thickness)));
+  EXPECT_GT(static_cast<int>(nodes.quadrature.size()), nodes_for_path(c.film.path_nm(c.material, thickness)));
   EXPECT_LE(nodes.error, kMostFoldingError);
 }
 
 TEST(FilmNodes, SayWhenNoNumberOfThemWillDo) {
   const Case c = reflector(1.38, 8);
   const FilmNodes nodes = nodes_for_film(c.material, c.film, Illuminant::d65, kSpace, c.film.thickness_nm());
-  EXPECT_EQ(nodes.count, static_cast<int>(kMostWavelengths));
+  EXPECT_EQ(nodes.quadrature.size(), kMostWavelengths);
   EXPECT_GT(nodes.error, kMostFoldingError);
 }
 
@@ -57,7 +57,7 @@ TEST(FilmNodes, NoThicknessAtAllTakesTheFewest) {
   Case c;
   c.film.layers = {{0, OpticalIndex::constant(1.5)}};
   const FilmNodes nodes = nodes_for_film(c.material, c.film, Illuminant::d65, kSpace, 0);
-  EXPECT_EQ(nodes.count, 16);
+  EXPECT_EQ(nodes.quadrature.size(), 16u);
   EXPECT_EQ(nodes.path_nm, 0);
   EXPECT_LE(nodes.error, kMostFoldingError);
 }

@@ -34,11 +34,17 @@ std::vector<test::LayeredDesign> written_otherwise() {
            [](double) {
              return Layers{{0, 2.5}, {240, 1.7}, {0, {1.4, 1}}};
            }},
-          {"one, shares alone",
+          {"shares alone",
            [](double) {
-             return Layers{{1, 1.7}};
+             return Layers{{0.5, 1.7}, {1, 1.7}};
            },
-           240}};
+           2}};
+}
+
+test::Configuration written_as(const test::LayeredDesign& design, const test::NamedMaterial& surface) {
+  test::Configuration result = test::with_film(design, surface);
+  result.material.film_thickness_nm = 240;
+  return result;
 }
 
 Material single(Material m) {
@@ -50,11 +56,11 @@ Material single(Material m) {
 TEST(LayeredLimits, EqualLayersReflectAsOne) {
   for (const auto& surface : test::film_surfaces(Rgb(0.5)))
     for (const auto& design : written_otherwise()) {
-      const auto written = test::with_film(design, surface);
-      const Pfmc one(single(surface.material)), other(written.material, written.wavelengths);
+      const auto [name, material, wavelengths] = written_as(design, surface);
+      const Pfmc one(single(surface.material)), other(material, wavelengths);
       for (const double cosine : {1.0, 0.7, 0.3, 0.05}) {
         const Rgb expected = one.film_reflectance(cosine), found = other.film_reflectance(cosine);
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 1e-8) << written.name << ' ' << cosine;
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 1e-8) << name << ' ' << cosine;
       }
     }
 }
@@ -67,13 +73,13 @@ TEST(LayeredLimits, WalksThroughEqualLayersAreThoseThroughOne) {
     if (!ExactRest::is_valid_for(one)) continue;
     const Rgb expected = ExactRest(one, Wavelengths::rgb3(one)).rest(kOblique, kSteep);
     for (const auto& design : written_otherwise()) {
-      const auto written = test::with_film(design, surface);
-      const Pfmc pfmc(written.material, written.wavelengths);
+      const auto [name, material, wavelengths] = written_as(design, surface);
+      const Pfmc pfmc(material, wavelengths);
       for (const Technique technique : test::kTechniques) {
         Rng rng(1, 0);
         const auto found = test::mean_rest(pfmc, kOblique, kSteep, technique, {1e-2, 0, 500, 4000}, rng);
-        test::expect_agree(found, expected, 4.5, 1e-3, written.name + ", " + test::name_of(technique));
-        EXPECT_LE(found.g.std_error(), 0.05 * expected.g) << written.name;
+        test::expect_agree(found, expected, 4.5, 1e-3, name + ", " + test::name_of(technique));
+        EXPECT_LE(found.g.std_error(), 0.05 * expected.g) << name;
       }
     }
   }
@@ -83,55 +89,60 @@ TEST(LayeredLimits, WalksThroughEqualLayersAreThoseThroughOne) {
 TEST(LayeredLimits, ManyFacetsOfEqualLayersAreThoseOfOne) {
   for (const auto& surface : test::film_surfaces({0.9, 0.8, 0.6}, 0.1)) {
     if (!surface.material.has_multiple_facets()) continue;
-    const auto written = test::with_film(written_otherwise().front(), surface);
+    const auto [name, material, wavelengths] = written_as(written_otherwise().front(), surface);
     Rng rng(2, 0);
     const auto run = [&](const Pfmc& pfmc) {
       return test::mean_rest(pfmc, kOblique, kSteep, Technique::unidirectional, {5e-3, 0, 500, 10000}, rng);
     };
     const auto one = run(Pfmc(single(surface.material)));
-    const auto other = run(Pfmc(written.material, written.wavelengths));
+    const auto other = run(Pfmc(material, wavelengths));
     for (int c = 0; c < 3; ++c)
       EXPECT_LT(test::deviation(one[c].mean(), one[c].std_error(), other[c].mean(), other[c].std_error()),
                 4.5)
-          << written.name << ' ' << c;
+          << name << ' ' << c;
   }
 }
 
-// R from both sides and T of uneven films are means over the factor on the thicknesses, by Simpson's rule.
-TEST(LayeredLimits, UnevenFilmsHaveMeanPowers) {
-  constexpr int kSteps = 200;
-  const auto weight = [](int i) {
-    const double z = -3 + 6.0 * i / kSteps;
-    return (i == 0 || i == kSteps ? 1 : i % 2 ? 4 : 2) * std::exp(-z * z / 2);
-  };
+// The mean over the factor on uneven thicknesses, by Simpson's rule.
+test::PlainStack::Powers mean_powers(const test::Configuration& c, std::size_t k, bool is_outside,
+                                     double cosine) {
+  const int steps = c.material.thickness_spread > 0 ? 200 : 0;
   double whole = 0;
-  for (int i = 0; i <= kSteps; ++i) whole += weight(i);
+  test::PlainStack::Powers sum{0, 0};
+  for (int i = 0; i <= steps; ++i) {
+    const double z = steps > 0 ? -3 + 6.0 * i / steps : 0;
+    const double weight = (i == 0 || i == steps ? 1 : i % 2 ? 4 : 2) * std::exp(-z * z / 2);
+    Material even = c.material;
+    even.thickness_spread = 0;
+    even.film_thickness_nm *= 1 + c.material.thickness_spread * z;
+    Rng unused(0, 0);
+    const auto power = test::PlainStack(even, c.wavelengths, k).meet(is_outside, cosine, unused);
+    whole += weight;
+    sum.reflectance += weight * power.reflectance;
+    sum.transmittance += weight * power.transmittance;
+  }
+  return {sum.reflectance / whole, sum.transmittance / whole};
+}
+
+// R from both sides and T of what walks look up, at every wavelength and over opaque bases.
+TEST(LayeredLimits, PowersAreMeansOverPlatelets) {
+  std::vector<test::LayeredDesign> designs = test::clear_designs();
+  for (const auto& more : {test::absorbing_designs(), test::opaque_designs()})
+    designs.insert(designs.end(), more.begin(), more.end());
+  const int numbers[] = {0, 1, 2};
   for (const auto& surface : test::film_surfaces(Rgb(1))) {
     if (!surface.material.is_smooth()) continue;  // facets change nothing
-    for (const auto& design :
-         {test::uneven_design(), test::uneven_absorbing_design(), test::dark_oxide_design()}) {
-      const auto [name, material, wavelengths] = test::with_film(design, surface);
-      const FilmCurves curves(material, wavelengths);
-      const int numbers[] = {0, 1, 2};
-      for (const auto side : {walk::Side::outside, walk::Side::inside})
+    for (const auto& c : test::with_films(designs, {surface})) {
+      const FilmCurves curves(c.material, c.wavelengths);
+      for (const bool is_outside : {true, false})
         for (const double cosine : {1.0, 0.8, 0.5, 0.2}) {
-          if (side == walk::Side::inside && material.is_opaque()) continue;
+          if (!is_outside && c.material.is_opaque()) continue;
           FilmPowers found;
-          curves.at(side, cosine, numbers, found);
+          curves.at(is_outside ? walk::Side::outside : walk::Side::inside, cosine, numbers, found);
           for (std::size_t k = 0; k < 3; ++k) {
-            double r = 0, t = 0;
-            for (int i = 0; i <= kSteps; ++i) {
-              Material even = material;
-              even.thickness_spread = 0;
-              even.film_thickness_nm *= 1 + material.thickness_spread * (-3 + 6.0 * i / kSteps);
-              Rng unused(0, 0);
-              const auto power =
-                  test::PlainStack(even, wavelengths, k).meet(side == walk::Side::outside, cosine, unused);
-              r += weight(i) / whole * power.reflectance;
-              t += weight(i) / whole * power.transmittance;
-            }
-            EXPECT_NEAR(found.reflectance[k], r, 1e-7) << name << ' ' << cosine << ' ' << k;
-            EXPECT_NEAR(found.transmittance[k], material.is_opaque() ? 0 : t, 1e-7) << name << ' ' << cosine;
+            const auto [r, t] = mean_powers(c, k, is_outside, cosine);
+            EXPECT_NEAR(found.reflectance[k], r, 1e-7) << c.name << ' ' << cosine << ' ' << k;
+            EXPECT_NEAR(found.transmittance[k], c.material.is_opaque() ? 0 : t, 1e-7) << c.name << ' ' << k;
           }
         }
     }

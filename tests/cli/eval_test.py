@@ -308,8 +308,7 @@ class Stacks(EvalTest):
                         naming=["standard input:2: ", "allowed", *needles])
         for columns, needles in (("layers,theta_i_deg", ["'wavelength_nm' is missing"]),
                                  ("layers,film_ior,wavelength_nm,theta_i_deg", ["'film_ior'", "beside 'layers'"]),
-                                 ("layers,transmittance,wavelength_nm,theta_i_deg", ["'transmittance'", "output"]),
-                                 ("base_extinction,theta_i_deg", ["'base_extinction'", "without 'layers'"])):
+                                 ("layers,transmittance,wavelength_nm,theta_i_deg", ["'transmittance'", "output"])):
             self.refuse("eval", "tiny.toml", "--points", "-", "--quantity", "film", stdin=columns + "\n", naming=needles)
         self.refuse("eval", "tiny.toml", "--points", "-", stdin=f"{header},theta_o_deg,phi_deg\n",
                     naming=["'layers'", "--quantity film"])

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <ranges>
+
 #include "bake/base/version.h"
 #include "bake/report/appearance.h"
 #include "bake/report/chart.h"
@@ -289,7 +291,7 @@ Markup energy_section(const ReportSource& source) {
 
 Markup material_rows(const Material& material) {
   Markup rows;
-  for (const auto& key : material_keys())
+  for (const auto& key : material_keys() | std::views::filter(is_in_tables))
     rows += format_markup("<tr><th>{}</th><td>{}</td></tr>\n", key, get_text(material, key));
   return rows;
 }

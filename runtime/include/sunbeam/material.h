@@ -84,8 +84,8 @@ inline constexpr double kMostScatteringDepth = 100;
 // These give access by key and text, for CSV columns, table metadata and messages. Lists are separated by
 // ';'.
 const std::vector<std::string>& material_keys();
-// Says whether the key is younger than table files: they lack it, and then it has its default.
-bool is_optional_key(std::string_view key);
+// Says whether table files hold the key. Where they do not, a table's material has the default.
+bool is_in_tables(std::string_view key);
 std::string get_text(const Material& material, std::string_view key);
 // Throws Error "key 'K': found V; allowed: ..." (without a file: the caller adds it). What a base_ior may be
 // depends on base_extinction: set the keys in the order of material_keys().

@@ -129,7 +129,7 @@ const std::vector<std::string>& material_keys() {
   return keys;
 }
 
-bool is_optional_key(std::string_view key) { return key == "thickness_spread" || key == "base_extinction"; }
+bool is_in_tables(std::string_view key) { return key != "thickness_spread" && key != "base_extinction"; }
 
 std::string_view to_string(Transmission transmission) {
   return transmission == Transmission::straight ? "straight" : "refract";

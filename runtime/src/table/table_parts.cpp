@@ -249,8 +249,11 @@ Table build(TableParts& parts) {
   table.schema_version = version;
   for (const auto& key : material_keys()) {
     const std::string attribute = "material." + key;
-    if (is_optional_key(key) && !parts.attributes.contains(attribute)) continue;
-    set_from_text(table.material, key, require(parts.attributes, attribute));
+    if (is_in_tables(key))
+      set_from_text(table.material, key, require(parts.attributes, attribute));
+    else if (parts.attributes.contains(attribute))
+      throw Error("attribute '" + attribute + "' is there; allowed in schema versions up to " +
+                  std::to_string(kTableSchemaVersion) + ": none of this name");
   }
   if (const auto defect = table.material.defect()) throw Error(defect->message());
   const std::string& symmetry = require(parts.attributes, "symmetry");
@@ -345,7 +348,10 @@ Attributes attributes_of(const TableView& view) {
   attributes["symmetry"] = name_of(table.symmetry);
   for (const auto& key : material_keys()) {
     const std::string text = get_text(table.material, key);
-    if (!is_optional_key(key) || text != get_text(Material(), key)) attributes["material." + key] = text;
+    if (is_in_tables(key))
+      attributes["material." + key] = text;
+    else if (text != get_text(Material(), key))
+      throw Error("key '" + key + "': found " + text + "; allowed in a table: " + get_text(Material(), key));
   }
   if (table.is_factored()) {
     for (const auto& [key, value] : describe_axes(table.factors.grid)) attributes[kGridPrefix + key] = value;

@@ -238,6 +238,21 @@ TEST(TableReader, UnknownSchemaVersion) {
     }
 }
 
+// No table holds such a film, and a look-up would take it for another.
+TEST(TableReader, FilmsThatNoTableHolds) {
+  for (const std::string key : {"thickness_spread", "base_extinction"}) {
+    Table table = small_table();
+    table.info["material." + key] = "0.1";
+    for (const Form& form : forms())
+      EXPECT_THAT(refusal(form, form.bytes(table), kName),
+                  AllOf(StartsWith(kName), HasSubstr("'material." + key + "'")))
+          << form.name;
+  }
+  Table table = small_table();
+  table.material.thickness_spread = 0.1;
+  for (const Form& form : forms()) EXPECT_THROW(form.bytes(table), Error) << form.name;
+}
+
 // Version 2 was wrong there.
 TEST(TableReader, Version2BelowTheExterior) {
   Table table = small_table();

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The pictures of docs/measured/figures.md: bash docs/figures.sh [--size WIDTHxHEIGHT] [--spp N] [--only NAME] [--out FOLDER]
-# --size and --spp replace each picture's (each cell's, in a montage) own; NAME: bands portrait fig1 fig4 fig5 fig6 spectrum sheets.
+# --size and --spp replace each picture's (each cell's, in a montage) own; NAME: bands portrait fig1 fig4 fig5 fig6 spectrum sheets films.
 # Needs build/release/bin/sunbeam (bash cmake/demo.sh), python3-pil and fonts-dejavu-core. Tables, .exr files and the numbers of the captions (numbers_fig5.md, numbers_fig6.md) stay in build/figures.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -17,8 +17,8 @@ while [ $# -gt 0 ]; do
   shift 2
 done
 case $only in
-  '' | bands | portrait | fig1 | fig4 | fig5 | fig6 | spectrum | sheets) ;;
-  *) echo "--only: found '$only'; allowed: bands, portrait, fig1, fig4, fig5, fig6, spectrum, sheets" >&2; exit 2 ;;
+  '' | bands | portrait | fig1 | fig4 | fig5 | fig6 | spectrum | sheets | films) ;;
+  *) echo "--only: found '$only'; allowed: bands, portrait, fig1, fig4, fig5, fig6, spectrum, sheets, films" >&2; exit 2 ;;
 esac
 
 sunbeam=build/release/bin/sunbeam
@@ -175,9 +175,34 @@ sheets() {
   sheet sheet_absorption absorption_per_nm 0.0 0.1 0.3 0.7
 }
 
+# look RECIPE: the scene of one ball with this recipe.
+look() {
+  local scene=$work/look_$(basename "$1")
+  sed "s#\"../recipes/titanium.toml\"#\"$(realpath --relative-to="$work" "$1")\"#" tables/scenes/look.toml >"$scene"
+  echo "$scene"
+}
+
+# Films of layers, live: six looks, an oxide that grows on titanium, platelets of ever less even thickness.
+films() {
+  local name nm spread looks=(chrysochroa morpho nacre titanium steel oil) oxides='15 25 38 50 65 85 110 125 140 155 170 190' spreads='0 0.05 0.1 0.2 0.3'
+  for name in "${looks[@]}"; do
+    render "look_$name" "$(look "tables/recipes/$name.toml")" 240x240 256 --material live
+  done
+  montage films 3 $(pngs "${looks[@]/#/look_}")
+  for nm in $oxides; do
+    render "titanium_$nm" tables/scenes/look.toml 100x100 128 --material live --set "material[0].film_thickness_nm=$nm"
+  done
+  montage titanium 6 $(pngs $(printf 'titanium_%s ' $oxides))
+  for spread in $spreads; do
+    sed "s/^thickness_spread = 0.05/thickness_spread = $spread/" tables/recipes/nacre.toml >"$work/spread_$spread.toml"
+    render "spread_$spread" "$(look "$work/spread_$spread.toml")" 140x140 256 --material live
+  done
+  montage spread 5 --top "${spreads// /|}" $(pngs $(printf 'spread_%s ' $spreads))
+}
+
 bake_default
 case ${only:-all} in fig5 | fig6 | all) bake_black ;; esac
-for figure in ${only:-bands portrait fig1 fig4 fig5 fig6 spectrum sheets}; do
+for figure in ${only:-bands portrait fig1 fig4 fig5 fig6 spectrum sheets films}; do
   rm -f "$work/numbers_$figure.md"
   start=$SECONDS
   "$figure"

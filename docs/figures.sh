@@ -182,25 +182,38 @@ look() {
   echo "$scene"
 }
 
-# Films of layers, live: six looks, an oxide that grows on titanium, platelets of ever less even thickness.
+# oxides NAME NM...: balls of the recipe NAME with films of these thicknesses.
+oxides() {
+  local name=$1 nm
+  for nm in "${@:2}"; do
+    render "${name}_$nm" "$(look "tables/recipes/$name.toml")" 104x104 256 --material live --set "material[0].film_thickness_nm=$nm"
+  done
+}
+
+# Films of layers, live: six looks, oxides that grow on titanium and on steel, platelets of ever less even thickness.
 films() {
-  local name nm spread looks=(chrysochroa morpho nacre titanium steel oil) oxides='15 25 38 50 65 85 110 125 140 155 170 190' spreads='0 0.05 0.1 0.2 0.3'
-  for name in "${looks[@]}"; do
+  local name spread spreads='0 0.05 0.1 0.2 0.3'
+  /usr/bin/python3 docs/film_scenes.py "$work" ../../tables/recipes
+  render look_chrysochroa "$work/beetle.toml" 240x240 256 --material live
+  render look_oil "$work/slick.toml" 240x240 512 --material live
+  for name in morpho nacre titanium steel; do
     render "look_$name" "$(look "tables/recipes/$name.toml")" 240x240 256 --material live
   done
-  montage films 3 $(pngs "${looks[@]/#/look_}")
-  for nm in $oxides; do
-    render "titanium_$nm" tables/scenes/look.toml 100x100 128 --material live --set "material[0].film_thickness_nm=$nm"
-  done
-  montage titanium 6 $(pngs $(printf 'titanium_%s ' $oxides))
+  montage films 3 $(pngs look_{chrysochroa,morpho,nacre,titanium,steel,oil})
+
+  oxides titanium 24 40 48 64 110 140 188
+  montage titanium 7 --top '24 gold|40 purple|48 blue|64 light blue|110 yellow|140 pink|188 green' $(pngs titanium_{24,40,48,64,110,140,188})
+  oxides steel 20 32 41 53 80
+  montage steel 5 --top '20 straw|32 brown|41 purple|53 blue|80 grey blue' $(pngs steel_{20,32,41,53,80})
+
   for spread in $spreads; do
-    sed "s/^thickness_spread = 0.05/thickness_spread = $spread/" tables/recipes/nacre.toml >"$work/spread_$spread.toml"
-    render "spread_$spread" "$(look "$work/spread_$spread.toml")" 140x140 256 --material live
+    sed "s/^thickness_spread = 0.05/thickness_spread = $spread/; s/^albedo = 0.5/albedo = 0.03/" tables/recipes/nacre.toml >"$work/spread_$spread.toml"
+    render "spread_$spread" "$(look "$work/spread_$spread.toml")" 150x150 256 --material live
   done
   montage spread 5 --top "${spreads// /|}" $(pngs $(printf 'spread_%s ' $spreads))
 }
 
-bake_default
+[ "$only" = films ] || bake_default
 case ${only:-all} in fig5 | fig6 | all) bake_black ;; esac
 for figure in ${only:-bands portrait fig1 fig4 fig5 fig6 spectrum sheets films}; do
   rm -f "$work/numbers_$figure.md"

@@ -171,13 +171,14 @@ SUNBEAM_INLINE Polarised polarised(const ComplexQuad& field, const ComplexQuad& 
   return {squared_norm(minus) / size, 4 * q * far / size};
 }
 
-// Gauss' rule of n nodes integrates up to 2 n radians; fringes of the second order are resolved.
+// Gauss' rule of n nodes integrates up to 2 n radians; fringes of the fourth order are resolved.
 std::vector<std::pair<double, double>> thickness_factors(double spread, double waves) {
   constexpr double kCut = 3, kMostWaves = 100;
   if (waves > kMostWaves)
     throw Error("key 'thickness_spread': found " + to_text(spread) + " of a film whose path 2 sum(n d) is " +
                 to_text(waves) + " wavelengths; allowed: up to " + to_text(kMostWaves) + " wavelengths");
-  const GaussRule rule = gauss_legendre(24 + static_cast<int>(2 * kPi * waves * 2 * kCut * spread));
+  const double radians = 2 * kPi * waves * 2 * kCut * spread;
+  const GaussRule rule = gauss_legendre(48 + static_cast<int>(2 * radians));
   std::vector<std::pair<double, double>> factors;
   double sum = 0;
   for (int i = 0; i < rule.size(); ++i) {

@@ -13,7 +13,7 @@ namespace {
 constexpr PanelCurve::Accuracy kReflectanceAccuracy{1e-6, 1e-8, 1e-9};
 constexpr PanelCurve::Accuracy kSmoothAccuracy{1e-6, 1e-16, 1e-9};
 constexpr PanelCurve::Accuracy kRoughAccuracy{2e-6, 1e-15, 1.0 / 32768};
-// Powers of layered films come from curves themselves, whose steps of 1e-8 are not to be resolved.
+// Powers of layered films come from curves themselves, whose steps are not to be resolved.
 constexpr PanelCurve::Accuracy kLayeredAccuracy{1e-6, 1e-7, 1e-7};
 constexpr PanelCurve::Accuracy kLayeredRoughAccuracy{1e-5, 1e-7, 1.0 / 4096};
 

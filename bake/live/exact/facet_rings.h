@@ -4,9 +4,10 @@
 //
 // With theta the angle of a ring, h = cos(theta) w + sin(theta) (cos(psi) a + sin(psi) b) and a towards the
 // macro normal, dh = sin(theta) dtheta dpsi. What light does at a normal changes abruptly where its way on
-// grazes the surface: a bound on h.z, and so on psi. Over theta and psi go coordinates that widen the peak of
-// D: tan(x) of the distance from the macro normal over the roughness, and tan(psi / 2) = q tan(y / 2), which
-// makes 1 / (A - B cos(psi)) constant for q^2 = (A - B) / (A + B).
+// grazes the surface: a bound on h.z, and so on psi. Over theta and psi go coordinates that widen the peaks
+// of D: tan(x) of the distance from the macro normal over the roughness, and tan((psi - psi_0) / 2) = q tan(y
+// / 2) about a peak at psi_0. D is 1 / F^2 with F = (h.x / u)^2 + (h.y / v)^2 + h.z^2 up to a factor; a ring
+// has one peak, or two if the film is anisotropic, and is divided where F is largest.
 #pragma once
 
 #include <functional>
@@ -22,13 +23,13 @@ class FacetRings {
  public:
   // Holds rules of quadrature: rings of a panel, the film on a part of a panel, and facets of half a ring.
   struct Rules {
-    Rules(int nodes, const Roughness& roughness);
+    explicit Rules(int nodes);
     const GaussRule& of_width(double share) const;  // of a panel, at most 1
 
     int panels;  // that rings are divided into
     GaussInterpolation panel;
     std::vector<GaussRule> film;
-    GaussRule around;
+    GaussRule around, around_peak;  // half a ring, or a peak of an anisotropic film's
   };
 
   // Says how the light of a direction goes on; `ratio` is n0 / n2 if facets bend it, else 1, and `critical`
@@ -66,10 +67,22 @@ class FacetRings {
   template <class ArcOf>
   std::vector<Node> nodes(std::vector<double> angles, ArcOf arc_of, const Power& power) const;
   std::vector<Rgb> moments(const Panel& panel, const Power& power) const;
+  // Holds where D peaks on a ring, and psi between which no other peak lies.
+  struct Peak {
+    double psi, q, low, high;
+  };
+  struct Ring;
+  Ring ring(double angle) const;
+  static double half_width(const Ring& ring, double psi, double end);
+  std::vector<Peak> peaks(double angle) const;
   void add_ring(double angle, double weight, const Arc& arc, const Rgb& power,
                 std::vector<Node>& nodes) const;
-  double coordinate(double angle) const { return std::atan((angle - tilt_) / width_); }
-  double angle_at(double x) const { return tilt_ + width_ * std::tan(x); }
+  void add_part(double angle, double weight, const Peak& peak, double low, double high, const Rgb& power,
+                const GaussRule& rule, std::vector<Node>& nodes) const;
+  Vec3 normal(double angle, double psi) const;
+  double coordinate(double angle) const { return std::asinh((angle - tilt_) / width_); }
+  double angle_at(double x) const { return tilt_ + width_ * std::sinh(x); }
+  double angle_of_ridge(double tilt) const;
   double cosine_of_psi(double angle, double normal_z) const;
 
   Vec3 w_;
@@ -80,6 +93,7 @@ class FacetRings {
   double sine_, tilt_;  // of the angle of w with the macro normal, and the angle
   double width_;        // of D
   Vec3 towards_, aside_;
+  Vec3 ridge_;  // the axis of the larger roughness of an anisotropic film
 };
 
 }  // namespace sunbeam

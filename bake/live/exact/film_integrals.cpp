@@ -49,7 +49,7 @@ FilmIntegrals::FilmIntegrals(const Material& material, const Wavelengths& three,
       azimuths_(gauss_legendre(resolution.azimuths)),
       visible_(gauss_legendre(visible_nodes())),
       visible_azimuths_(gauss_legendre(visible_.size() * 3 / 4)),
-      rings_(resolution.visible, material.roughness),
+      rings_(resolution.visible),
       turns_(material.roughness) {}
 
 // Phase difference of neighbouring reflections, radians, at the shortest wavelength.

@@ -9,7 +9,7 @@ namespace {
 
 // The narrowest panels resolve a resonance of 1e-5 in the cosine, and the square root where a dispersive base
 // begins to reflect totally.
-constexpr PanelCurve::Accuracy kAccuracy{1e-7, 1e-9, 1e-7};
+constexpr PanelCurve::Accuracy kAccuracy{1e-9, 1e-12, 1e-7};
 
 bool absorbs(const Wavelengths& wavelengths) {
   return std::ranges::any_of(wavelengths.layers, [](const std::vector<FilmLayer>& layers) {

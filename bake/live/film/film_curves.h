@@ -7,7 +7,7 @@
 // Directions are those of Material: below the film light travels by base_ior, also where the base's index
 // depends on the wavelength, and in "straight" mode as outside.
 //
-// Values are right to 1e-8. R + T = 1 holds to rounding where nothing absorbs. Const members are safe to
+// Values are right to 1e-10. R + T = 1 holds to rounding where nothing absorbs. Const members are safe to
 // share.
 #pragma once
 

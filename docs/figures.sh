@@ -186,7 +186,7 @@ look() {
 oxides() {
   local name=$1 nm
   for nm in "${@:2}"; do
-    render "${name}_$nm" "$(look "tables/recipes/$name.toml")" 104x104 128 --material live --set "material[0].film_thickness_nm=$nm"
+    render "${name}_$nm" "$(look "tables/recipes/$name.toml")" 104x104 256 --material live --set "material[0].film_thickness_nm=$nm"
   done
 }
 
@@ -194,10 +194,10 @@ oxides() {
 films() {
   local name spread spreads='0 0.05 0.1 0.2 0.3'
   /usr/bin/python3 docs/film_scenes.py "$work" ../../tables/recipes
-  render look_chrysochroa "$work/beetle.toml" 220x220 160 --material live
-  render look_oil "$work/slick.toml" 220x220 256 --material live
+  render look_chrysochroa "$work/beetle.toml" 220x220 320 --material live
+  render look_oil "$work/slick.toml" 220x220 512 --material live
   for name in morpho nacre titanium steel; do
-    render "look_$name" "$(look "tables/recipes/$name.toml")" 220x220 160 --material live
+    render "look_$name" "$(look "tables/recipes/$name.toml")" 220x220 320 --material live
   done
   montage films 3 $(pngs look_{chrysochroa,morpho,nacre,titanium,steel,oil})
 
@@ -208,7 +208,7 @@ films() {
 
   for spread in $spreads; do
     sed "s/^thickness_spread = 0.05/thickness_spread = $spread/; s/^albedo = 0.5/albedo = 0.03/" tables/recipes/nacre.toml >"$work/spread_$spread.toml"
-    render "spread_$spread" "$(look "$work/spread_$spread.toml")" 130x130 96 --material live
+    render "spread_$spread" "$(look "$work/spread_$spread.toml")" 130x130 256 --material live
   done
   montage spread 5 --top "${spreads// /|}" $(pngs $(printf 'spread_%s ' $spreads))
 }

@@ -119,6 +119,56 @@ SUNBEAM_INLINE LayerMatrix matrix_of(const LayerAngle& a, double factor) {
           factor * a.delta.im};
 }
 
+constexpr double kLarge = 0x1p200, kLogLarge = 200 * 0.693147180559945309417;
+
+// (E, H) becomes (a E + b H, c E + d H).
+struct Matrix {
+  ComplexQuad a, b, c, d;
+
+  SUNBEAM_INLINE Quad size() const {
+    return squared_norm(a) + squared_norm(b) + squared_norm(c) + squared_norm(d);
+  }
+  SUNBEAM_INLINE void scale(const Quad& factor) {
+    for (ComplexQuad* entry : {&a, &b, &c, &d}) *entry = {entry->re * factor, entry->im * factor};
+  }
+};
+SUNBEAM_INLINE Matrix product(const Matrix& x, const Matrix& y) {
+  return {sum(product(x.a, y.a), product(x.b, y.c)), sum(product(x.a, y.b), product(x.b, y.d)),
+          sum(product(x.c, y.a), product(x.d, y.c)), sum(product(x.c, y.b), product(x.d, y.d))};
+}
+
+// What several layers do with the fields below them, of both polarisations.
+struct Transfer {
+  Matrix s, p;
+  alignas(32) Quad damping, log_scale;  // the latter of what the matrices were divided by
+};
+
+SUNBEAM_INLINE Transfer transfer_of(const LayerMatrix& m) {
+  return {{m.cosine, m.s_per_q, m.s_q, m.cosine}, {m.cosine, m.p_per_q, m.p_q, m.cosine}, m.damping, Quad{}};
+}
+SUNBEAM_INLINE Transfer product(const Transfer& above, const Transfer& below) {
+  Transfer t{product(above.s, below.s), product(above.p, below.p), above.damping + below.damping,
+             above.log_scale + below.log_scale};
+  const auto is_large = t.s.size() + t.p.size() > kLarge * kLarge;
+  const Quad factor = is_large ? Quad{} + 1 / kLarge : Quad{} + 1;
+  t.s.scale(factor);
+  t.p.scale(factor);
+  t.log_scale += is_large ? Quad{} + kLogLarge : Quad{};
+  return t;
+}
+
+// All periods of the layers. The same layers once more are a product of what is known already.
+SUNBEAM_INLINE Transfer repeated(const LayerMatrix* layers, std::size_t count, int periods) {
+  Transfer power = transfer_of(layers[0]);
+  for (std::size_t j = 1; j < count; ++j) power = product(power, transfer_of(layers[j]));
+  Transfer all = power;
+  for (int left = periods - 1; left > 0; left /= 2) {
+    if (left % 2 == 1) all = product(all, power);
+    power = product(power, power);
+  }
+  return all;
+}
+
 // The fields of both polarisations at one height. Those of p are (H, E), as their admittance is c / N.
 struct Fields {
   ComplexQuad s_e, s_h, p_h, p_e;
@@ -132,9 +182,20 @@ struct Fields {
     p_e = sum(product(m.cosine, p_e), product(m.p_q, h));
   }
 
+  // Upwards through all layers, or downwards: the product of all matrices in the other order has a and d
+  // exchanged, since those of one layer are equal.
+  SUNBEAM_INLINE void pass(const Transfer& t, bool upwards) {
+    const Matrix &s = t.s, &p = t.p;
+    const ComplexQuad e = s_e, h = p_h;
+    s_e = sum(product(upwards ? s.a : s.d, e), product(s.b, s_h));
+    s_h = sum(product(upwards ? s.d : s.a, s_h), product(s.c, e));
+    p_h = sum(product(upwards ? p.a : p.d, h), product(p.b, p_e));
+    p_e = sum(product(upwards ? p.d : p.a, p_e), product(p.c, h));
+    log_scale += t.log_scale;
+  }
+
   // Mirrors of many layers make fields grow without end, but a few layers by less than the range of numbers.
   SUNBEAM_INLINE void keep_finite() {
-    constexpr double kLarge = 0x1p200, kLogLarge = 200 * 0.693147180559945309417;
     const Quad size = squared_norm(s_e) + squared_norm(s_h) + squared_norm(p_h) + squared_norm(p_e);
     const auto is_large = size > kLarge * kLarge;
     const Quad factor = is_large ? Quad{} + 1 / kLarge : Quad{} + 1;
@@ -190,6 +251,20 @@ std::vector<std::pair<double, double>> thickness_factors(double spread, double w
   return factors;
 }
 
+SUNBEAM_INLINE void pass_once(const LayerMatrix* layers, std::size_t count, Fields& up, Fields& down,
+                              Quad& damping) {
+  constexpr std::size_t kFew = 8;
+  for (std::size_t j = 0; j < count; ++j) {
+    up.pass(layers[count - 1 - j]);
+    down.pass(layers[j]);
+    damping += layers[j].damping;
+    if (j % kFew == 0) {
+      up.keep_finite();
+      down.keep_finite();
+    }
+  }
+}
+
 // Means of both polarisations; the transmittance is through times exp(log_damping).
 struct LaneSides {
   std::array<double, 4> above, through, below, log_damping;
@@ -200,16 +275,13 @@ void write_sides(const LayerMatrix* layers, std::size_t count, int periods, cons
                  const End& base, LaneSides& sides) {
   Fields up = base.fields(), down = exterior.fields();
   Quad damping{};
-  constexpr std::size_t kFew = 8;
-  for (std::size_t passed = 0, j = 0; passed < count * static_cast<std::size_t>(periods); ++passed, ++j) {
-    if (j == count) j = 0;
-    up.pass(layers[count - 1 - j]);
-    down.pass(layers[j]);
-    damping += layers[j].damping;
-    if (passed % kFew == 0) {
-      up.keep_finite();
-      down.keep_finite();
-    }
+  if (periods == 1) {
+    pass_once(layers, count, up, down, damping);
+  } else if (count > 0) {
+    const Transfer all = repeated(layers, count, periods);
+    up.pass(all, true);
+    down.pass(all, false);
+    damping = all.damping;
   }
   const Polarised s = polarised(up.s_e, up.s_h, exterior.q_s.re, base.q_s.re),
                   p = polarised(up.p_h, up.p_e, exterior.q_p.re, base.q_p.re),

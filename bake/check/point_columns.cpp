@@ -35,10 +35,21 @@ struct Key {
   std::string name, core;
 };
 
+// Keys of recipes that no row can replace.
+constexpr std::array kRecipeKeys = {"film_periods", "film_extinction"};
+
+void refuse_recipe_keys(const Csv& csv) {
+  for (const char* key : kRecipeKeys)
+    if (csv.column(key))
+      throw Error(fmt::format("{}: column '{}': a key of recipes alone; allowed: another recipe, or --set",
+                              csv.name, key));
+}
+
 std::vector<Key> known_keys() {
   std::vector<std::string> names = {"theta_i_deg", "theta_o_deg",   "phi_deg",
                                     "phi_i_deg",   "wavelength_nm", "layers"};
   names.insert(names.end(), material_keys().begin(), material_keys().end());
+  names.insert(names.end(), kRecipeKeys.begin(), kRecipeKeys.end());
   std::vector<Key> keys;
   for (const auto& name : names) keys.push_back({name, core_of(name)});
   return keys;
@@ -89,6 +100,7 @@ std::vector<std::string> result_names(Quantity quantity, bool monochromatic) {
 
 PointColumns::PointColumns(const Csv& csv, Quantity quantity)
     : csv_(csv), phi_i_(csv.column("phi_i_deg")), wavelength_(csv.column("wavelength_nm")) {
+  refuse_recipe_keys(csv);
   const std::vector<Key> keys = known_keys();
   for (const auto& name : result_names(quantity, is_monochromatic()))
     if (csv.column(name))

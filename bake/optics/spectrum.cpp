@@ -1,6 +1,7 @@
 #include "bake/optics/spectrum.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/text.h"
@@ -68,20 +69,19 @@ void Spectrum::require_served(const Material& material) const {
   if (!film_.reaches(material.film_thickness_nm))
     throw Error("key 'film_thickness_nm': found " + to_text(material.film_thickness_nm) +
                 ", but all layers of the film are 0 nm thick; allowed: 0");
-  if (is_full() && film_.path_nm(material, material.film_thickness_nm) > served_path_nm_)
-    throw Error("key 'film_thickness_nm': found " + to_text(material.film_thickness_nm) +
-                "; the wavelengths of the recipe resolve films up to " +
-                to_text(served_path_nm_ / film_.path_nm(material, 1)) + " nm");
+  if (is_full()) require_path(material, served_path_nm_, "; grid.film_thickness_nm in the recipe raises it");
+}
+
+void Spectrum::require_path(const Material& material, double longest_nm, const std::string& remedy) const {
+  if (film_.path_nm(material, material.film_thickness_nm) <= longest_nm) return;
+  throw Error("key 'film_thickness_nm': found " + to_text(material.film_thickness_nm) +
+              "; the wavelengths of the recipe resolve films up to " +
+              to_text(std::floor(longest_nm / film_.path_nm(material, 1))) + " nm" + remedy);
 }
 
 Wavelengths Spectrum::with_film(const Material& material, Wavelengths wavelengths) const {
   film_.fill(wavelengths);
-  const double path = film_.path_nm(material, material.film_thickness_nm);
-  const double longest = resolved_path_nm(kMostWavelengths);
-  if (path > longest && film_.is_layered(material))
-    throw Error("key 'film_thickness_nm': found " + to_text(material.film_thickness_nm) +
-                "; allowed of a layered film: up to " + to_text(longest / film_.path_nm(material, 1)) +
-                " nm");
+  if (film_.is_layered(material)) require_path(material, resolved_path_nm(kMostWavelengths), "");
   return wavelengths;
 }
 

@@ -77,6 +77,7 @@ class Spectrum {
  private:
   SpectralCurve albedo_curve(const Rgb& albedo) const;
   void require_served(const Material& material) const;
+  void require_path(const Material& material, double longest_nm, const std::string& remedy) const;
   Wavelengths with_film(const Material& material, Wavelengths wavelengths) const;
   Wavelengths full_wavelengths(const Material& material) const;
 

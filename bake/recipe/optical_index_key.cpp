@@ -1,8 +1,10 @@
 #include "bake/recipe/optical_index_key.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/text.h"
@@ -28,6 +30,12 @@ OpticalIndex read_cauchy(const ConfigTable& config, const char* ior_key, double 
   const auto values = formula.numbers(kCauchy, {});
   if (values.size() != 2 && values.size() != 3)
     formula.fail(kCauchy, fmt::format("found {} numbers; allowed: [A, B] or [A, B, C]", values.size()));
+  for (const double value : values)
+    if (&value != values.data() && value != 0 && std::abs(value) < 1)
+      formula.fail(kCauchy,
+                   fmt::format("found {:g}; allowed: B in nm^2 and C in nm^4, 0 or of at least 1; B in "
+                               "um^2 is a million times that in nm^2",
+                               value));
   std::array<double, 3> coefficients{};
   std::ranges::copy(values, coefficients.begin());
   return made(formula, kCauchy, [&] { return OpticalIndex::cauchy(coefficients, extinction); });
@@ -45,9 +53,7 @@ OpticalIndex read_name(const ConfigTable& config, const char* ior_key) {
   const auto names = optical_table_names();
   if (std::ranges::find(names, name) == names.end())
     config.fail(ior_key,
-                fmt::format("found \"{}\"; allowed: a table of optical constants, the nearest name of "
-                            "which is \"{}\"",
-                            printable(name), nearest(name, names)));
+                fmt::format("found \"{}\"; allowed names: {}", printable(name), fmt::join(names, ", ")));
   return OpticalIndex::named(name);
 }
 

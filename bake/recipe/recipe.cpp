@@ -106,11 +106,12 @@ double longest_path(const Thickest& thickest, const Material& material, const Fi
   const double path = film.path_nm(material, thickest.nm), longest = resolved_path_nm(kMostWavelengths);
   if (path > longest)
     thickest.config.fail(thickest.key,
-                         fmt::format("found {:g}; allowed with {}{}: up to {:g}", thickest.nm,
+                         fmt::format("found {:g}; allowed with {}{}: up to {:g} nm{}", thickest.nm,
                                      film.is_layered(material) ? "" : "spectrum.mode \"full\" and ",
                                      film.layers.empty() ? fmt::format("film_ior {:g}", material.film_ior)
                                                          : "the indices of its layers",
-                                     std::floor(longest / film.path_nm(material, 1))));
+                                     std::floor(longest / film.path_nm(material, 1)),
+                                     film.layers.empty() ? "" : " in all layers and periods"));
   return path;
 }
 

@@ -152,6 +152,13 @@ class FilmRecipe(support.CliTest):
         self.refuse("eval", "tiny.toml", "--quantity", "film", "--points", "-",
                     stdin="base_extinction,theta_i_deg\n1,30\n", naming=["key 'albedo': found 0.1", "base_extinction > 0"])
 
+    def test_columns_of_recipe_keys_are_refused(self):
+        self.write("r.toml", layered())
+        for column, needle in (("film_periods", "recipes alone"), ("film_extinction", "recipes alone"),
+                               ("film_period", "almost 'film_periods'")):
+            self.refuse("eval", "r.toml", "--quantity", "film", "--points", "-", stdin=f"{column},theta_i_deg\n2,30\n",
+                        naming=[f"column '{column}'", needle])
+
     def test_columns_that_contradict_the_design_are_refused(self):
         for text, column, needle in ((layered(), "film_ior", "layers"), (single('base_ior = "silica"'), "base_ior", "wavelength"),
                                      (single('base_ior = "Ti"'), "base_extinction", "wavelength")):

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <tuple>
 
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/text.h"
@@ -73,12 +74,13 @@ void set_albedo(Material& material, const std::string& text) {
 
 std::optional<Material::Defect> Material::defect() const {
   if (is_opaque()) {
-    for (const auto& [key, value] : {std::pair("albedo", max_component(albedo)),
-                                     {"absorption_per_nm", optical_depth()},
-                                     {"scattering_per_nm", scattering_depth()}})
-      if (value > 0)
+    for (const auto& [key, value, depth] : {std::tuple("albedo", max_component(albedo), 1.0),
+                                            {"absorption_per_nm", absorption_per_nm, pigment_thickness_nm},
+                                            {"scattering_per_nm", scattering_per_nm, pigment_thickness_nm}})
+      if (value * depth > 0)
         return Defect{key, "found " + to_text(value) +
-                               " with base_extinction > 0, below which nothing is seen; allowed: 0"};
+                               " over an opaque base (base_extinction > 0), below which nothing "
+                               "is seen; allowed: 0"};
     return {};
   }
   const Interval clear = allowed_interval("base_ior");

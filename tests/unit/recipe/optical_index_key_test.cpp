@@ -89,9 +89,16 @@ TEST(OpticalIndexKey, RefusesWrongLists) {
   EXPECT_THAT(refusal("ior = [[400, 1.5], [700, 1.6, -0.1]]"), HasSubstr("found k = -0.1 at 700 nm"));
 }
 
+// Most books print B in um^2, which in nm^2 would be no dispersion at all.
+TEST(OpticalIndexKey, RefusesCauchysFormulaInMicrometres) {
+  EXPECT_THAT(refusal("ior = { cauchy = [1.45, 0.0042] }"),
+              AllOf(HasSubstr("found 0.0042"), HasSubstr("nm^2")));
+  EXPECT_THAT(refusal("ior = { cauchy = [1.45, 4200, -1e-4] }"), HasSubstr("found -0.0001"));
+}
+
 TEST(OpticalIndexKey, RefusesWrongNames) {
   EXPECT_THAT(refusal("ior = \"chitn\""), AllOf(HasSubstr("key 'layer.ior': found \"chitn\""),
-                                                HasSubstr("the nearest name of which is \"chitin\"")));
+                                                HasSubstr("allowed names: Ag, Al"), HasSubstr("chitin")));
   EXPECT_THAT(refusal("ior = \"\""), HasSubstr("found \"\""));
   EXPECT_THAT(refusal("ior = \"1.5\""), HasSubstr("found \"1.5\""));
   EXPECT_THAT(refusal("ior = \"a\\u0007b\""), HasSubstr("found \"a\\x07b\""));

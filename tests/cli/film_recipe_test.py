@@ -185,7 +185,7 @@ class FilmRecipe(support.CliTest):
             (layered(d1=-1), ["'material.film[0].thickness_nm'", "found -1", "0 to 100000"]),
             (layered(d1=60000, d2=60000), ["'material.film'", "found 120000 nm", "up to 100000"]),
             (layered(n1=0.01), ["'material.film[0].ior'", "found 0.01", "0.05 to 10"]),
-            (layered(n1='"chitine"'), ["'material.film[0].ior'", '"chitin"']),
+            (layered(n1='"chitine"'), ["'material.film[0].ior'", 'chitin, guanine']),
             (layered(n1='"chitin"\nextinction = 0.1'), ["'material.film[0].extinction'", "beside a name"]),
             (layered(n1="1.5\nextincton = 0.1"), ["extincton", "'extinction'"]),
             (layered("film_thickness_nm = 300", d1=0, d2=0), ["'material.film_thickness_nm'", "found 300", "allowed: 0"]),

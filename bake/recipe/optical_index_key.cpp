@@ -52,8 +52,8 @@ OpticalIndex read_name(const ConfigTable& config, const char* ior_key) {
   const std::string name = config.string(ior_key);
   const auto names = optical_table_names();
   if (std::ranges::find(names, name) == names.end())
-    config.fail(ior_key,
-                fmt::format("found \"{}\"; allowed names: {}", printable(name), fmt::join(names, ", ")));
+    config.fail(ior_key, fmt::format("found \"{}\"; allowed: a table of optical constants, one of {}",
+                                     printable(name), fmt::join(names, ", ")));
   return OpticalIndex::named(name);
 }
 

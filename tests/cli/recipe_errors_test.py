@@ -75,7 +75,7 @@ class RecipeErrors(support.CliTest):
         self.check("material", "exterior_ior", '"1.5"', "found a string", "number")
         self.check("material", "exterior_ior", "[1.5]", "found a", "number")
         for key in ("base_ior", "film_ior"):
-            self.check("material", key, '"1.5"', 'found "1.5"', "a table of optical constants", "nearest")
+            self.check("material", key, '"1.5"', 'found "1.5"', "a table of optical constants", "one of Ag, Al")
             self.check("material", key, "true", "found a boolean", "a number", "[nm, n]")
             self.check("material", key, "[1.5]", "element 1 is 1.5", "lists of 2 to 3 numbers")
         self.check("material", "base_ior", "2020-01-01", "found a date", "number")

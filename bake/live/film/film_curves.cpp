@@ -65,21 +65,24 @@ std::vector<double> FilmCurves::edges(walk::Side side) const {
   return cosines;
 }
 
+void FilmCurves::reflect_totally(double cosine, std::span<const int> wavelengths, FilmPowers& powers) const {
+  const std::size_t count = wavelengths.size();
+  std::fill_n(powers.reflectance.begin(), count, 1.0);
+  std::fill_n(powers.transmittance.begin(), count, 0.0);
+  if (total_.panels() > 0) {
+    const PanelCurve::Place place = total_.find(cosine / critical_);
+    for (std::size_t i = 0; i < count; ++i)
+      powers.reflectance[i] = total_.value(place, static_cast<std::size_t>(wavelengths[i]));
+  }
+  std::copy_n(powers.reflectance.begin(), count, powers.reverse.begin());
+}
+
 void FilmCurves::at(walk::Side side, double cosine, std::span<const int> wavelengths,
                     FilmPowers& powers) const {
   double coordinate = cosine;
   if (!is_in_rarer(side)) {
     const double squared = refracted_cosine_squared(denser_ior(), rarer_ior(), cosine);
-    if (squared <= 0) {
-      for (std::size_t i = 0; i < wavelengths.size(); ++i) {
-        powers.reflectance[i] = powers.reverse[i] =
-            total_.panels() == 0
-                ? 1
-                : total_.value(total_.find(cosine / critical_), static_cast<std::size_t>(wavelengths[i]));
-        powers.transmittance[i] = 0;
-      }
-      return;
-    }
+    if (squared <= 0) return reflect_totally(cosine, wavelengths, powers);
     coordinate = std::sqrt(squared);
   }
   const PanelCurve::Place place = passing_.find(coordinate);

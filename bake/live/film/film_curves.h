@@ -48,6 +48,7 @@ class FilmCurves {
   std::vector<double> edges(walk::Side side) const;
 
  private:
+  void reflect_totally(double cosine, std::span<const int> wavelengths, FilmPowers& powers) const;
   bool is_in_rarer(walk::Side side) const;
   bool is_base_rarer() const { return base_ior_ < exterior_ior_; }
   double denser_ior() const { return is_base_rarer() ? exterior_ior_ : base_ior_; }

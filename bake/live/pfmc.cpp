@@ -61,18 +61,11 @@ Rgb Pfmc::fold(const double* values) const {
   return sum;
 }
 
-double Pfmc::mean_power(const Powers& powers) const {
-  double sum = 0;
-  for (int k = 0; k < layers_.count; ++k) sum += importance_[k] * powers[k];
-  return std::clamp(sum, 0.0, 1.0);
-}
-
 FilmPowers Pfmc::film_at(walk::Side side, double cosine) const {
   FilmPowers powers;
   cosine = std::clamp(cosine, 0.0, 1.0);
   if (layers_.is_layered()) {
-    layers_.curves->at(side, cosine, {layers_.phases.number.data(), static_cast<std::size_t>(layers_.count)},
-                       powers);
+    layers_.curves->at(side, cosine, layers_.phases.numbers(), powers);
     return powers;
   }
   const walk::FilmSide& film = side == walk::Side::outside ? layers_.film : layers_.film_below;
@@ -96,19 +89,8 @@ Rgb Pfmc::first(const Vec3& wo, const Vec3& wi) const {
 
 Rgb Pfmc::dirac(const Vec3& wo) const { return layers_.is_smooth() ? film_reflectance(wo.z) : Rgb(); }
 
-double Pfmc::entry_chance(const FilmPowers& film) const {
-  const double r = mean_power(film.reflectance);
-  return layers_.entry_chance(r, layers_.is_layered() ? mean_power(film.transmittance) : 1 - r);
-}
-
-double Pfmc::mirror_chance(const FilmPowers& film) const {
-  const double r = mean_power(film.reflectance);
-  if (!layers_.is_layered()) return r;
-  return walk::Layers::mirror_chance(r, mean_power(film.transmittance), mean_power(film.reverse));
-}
-
 double Pfmc::reflect_chance(double cos_exterior) const {
-  return entry_chance(film_at(walk::Side::outside, cos_exterior));
+  return layers_.entry_chance(importance_.data(), film_at(walk::Side::outside, cos_exterior));
 }
 
 double Pfmc::leaving_shape(double cos_exterior) const {
@@ -116,8 +98,7 @@ double Pfmc::leaving_shape(double cos_exterior) const {
   const double below2 = 1 - square(layers_.index_ratio) * (1 - square(cos_exterior));
   if (below2 <= 0) return 0;
   const FilmPowers film = film_at(walk::Side::outside, cos_exterior);
-  const double passes =
-      layers_.is_layered() ? mean_power(film.transmittance) : 1 - mean_power(film.reflectance);
+  const double passes = layers_.mean_transmittance(importance_.data(), film);
   return passes * layers_.open_guide.density(below2) * cos_exterior;
 }
 

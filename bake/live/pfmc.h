@@ -105,11 +105,8 @@ class Pfmc {
   void forecast_visits();
 
   using Powers = walk::Spectrum<double>;
-  double mean_power(const Powers& powers) const;
   Rgb fold(const double* values) const;
   FilmPowers film_at(walk::Side side, double cosine) const;
-  double entry_chance(const FilmPowers& film) const;
-  double mirror_chance(const FilmPowers& film) const;
   std::optional<BsdfSample> sample_plain(const Vec3& wo, Rng& rng, const Pfmc& below) const;
   double estimate_plain_pdf(const Vec3& wo, const Vec3& wi, Rng& rng, const Pfmc& below) const;
   std::optional<BsdfSample> sample_below(double cosine, Powers& throughput, Rng& rng) const;

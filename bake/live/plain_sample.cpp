@@ -28,7 +28,7 @@ std::optional<BsdfSample> Pfmc::sample_plain(const Vec3& wo, Rng& rng, const Pfm
   const Lane events(layers_);
   const auto facet = events.meet(wo.z, rng);
   const FilmPowers film = film_at(walk::Side::outside, facet.cosine);
-  const double reflect_chance = entry_chance(film);
+  const double reflect_chance = layers_.entry_chance(importance_.data(), film);
   if (rng.uniform() < reflect_chance) {
     const auto up = events.mirror(wo.z, facet);
     if (up.weight == 0) return {};
@@ -57,7 +57,7 @@ std::optional<BsdfSample> Pfmc::sample_below(double cosine, Powers& throughput, 
 
     const auto facet = events.meet(up.cosine, rng);
     const FilmPowers film = film_at(walk::Side::inside, facet.cosine);
-    const double reflect_chance = mirror_chance(film);
+    const double reflect_chance = layers_.mirror_chance(importance_.data(), film);
     if (rng.uniform() >= reflect_chance) {
       const auto out = events.cross(up.cosine, facet, 1 / layers_.index_ratio);
       if (out.weight == 0) return {};
@@ -81,7 +81,8 @@ double Pfmc::leave_pdf(const Vec3& wi, Rng& rng, double& cosine) const {
   const auto crossing = events.cross(wi.z, facet, layers_.index_ratio);
   cosine = crossing.cosine;
   if (crossing.weight == 0) return 0;
-  const double pass_chance = 1 - mirror_chance(film_at(walk::Side::outside, facet.cosine));
+  const double pass_chance =
+      1 - layers_.mirror_chance(importance_.data(), film_at(walk::Side::outside, facet.cosine));
   if (!layers_.bends) return pass_chance;
   const double solid_angles = square(layers_.index_ratio) * wi.z / cosine;
   return pass_chance * solid_angles * events.g1_ratio(cosine, wi.z);
@@ -110,7 +111,8 @@ double Pfmc::pdf_below(const Vec3& wi, Rng& rng) const {
     const auto up = events.leave_base(layers_.open_guide, rng);
     const auto facet = events.meet(up.cosine, rng);
     if (events.mirror(up.cosine, facet).weight == 0) return pdf;
-    if (rng.uniform() >= mirror_chance(film_at(walk::Side::inside, facet.cosine))) return pdf;
+    const FilmPowers film = film_at(walk::Side::inside, facet.cosine);
+    if (rng.uniform() >= layers_.mirror_chance(importance_.data(), film)) return pdf;
   }
 }
 

@@ -69,17 +69,9 @@ struct WalkContext {
     return true;
   }
 
-  double mean(const Powers& power) const {
-    double sum = 0;
-    for (int j = 0; j < layers.count; ++j) sum += importance[j] * power[j];
-    return std::clamp(sum, 0.0, 1.0);
-  }
-
   // How often sample() takes a facet to mirror.
   double mirror_chance(const Place& at, const FilmPowers& film) const {
-    const double r = mean(film.reflectance), t = layers.is_layered() ? mean(film.transmittance) : 1 - r;
-    if (at.is_entry) return layers.entry_chance(r, t);
-    return layers.is_layered() ? Layers::mirror_chance(r, t, mean(film.reverse)) : r;
+    return at.is_entry ? layers.entry_chance(importance, film) : layers.mirror_chance(importance, film);
   }
 
   // What a facet does with light that meets it at this cosine.

@@ -23,6 +23,7 @@ struct FilmPhases {
   int count = 0;
   const FilmCurves* curves = nullptr;
   std::array<int, kMostWavelengths> number{};
+  std::span<const int> numbers() const { return {number.data(), static_cast<std::size_t>(count)}; }
   bool is_bare = false;  // no film: k = 0 throughout
   bool is_even = false;  // k[j] = k[0] + j step
 
@@ -185,11 +186,9 @@ __attribute__((noinline)) void look_up_film(const FilmPhases& phases, const V& i
   std::array<double, kWidth * kMostWavelengths> reflectance, transmittance;
   __builtin_memcpy(inside.data(), &is_inside, sizeof(V));
   __builtin_memcpy(at.data(), &cosine, sizeof(V));
-  const std::size_t count = static_cast<std::size_t>(phases.count);
-  phases.curves->at(inside.data(), at, {phases.number.data(), count}, reflectance.data(),
-                    transmittance.data());
-  __builtin_memcpy(r.data(), reflectance.data(), count * sizeof(V));
-  __builtin_memcpy(t.data(), transmittance.data(), count * sizeof(V));
+  phases.curves->at(inside.data(), at, phases.numbers(), reflectance.data(), transmittance.data());
+  __builtin_memcpy(r.data(), reflectance.data(), phases.count * sizeof(V));
+  __builtin_memcpy(t.data(), transmittance.data(), phases.count * sizeof(V));
 }
 
 }  // namespace sunbeam::walk

@@ -45,10 +45,9 @@ const Kernels kAvx2Kernels = kernels_for<Avx2, false>("avx2", &kLayeredAvx2);
 
 void film_powers(const Kernels& kernels, const FilmSide& film, const FilmPhases& phases, Side side,
                  double cosine, FilmPowers& powers) {
-  const std::size_t count = static_cast<std::size_t>(phases.count);
-  if (phases.curves) return phases.curves->at(side, cosine, {phases.number.data(), count}, powers);
+  if (phases.curves) return phases.curves->at(side, cosine, phases.numbers(), powers);
   kernels.reflectances(film, phases, cosine, powers.reflectance.data());
-  for (std::size_t j = 0; j < count; ++j) powers.transmittance[j] = 1 - powers.reflectance[j];
+  for (int j = 0; j < phases.count; ++j) powers.transmittance[j] = 1 - powers.reflectance[j];
 }
 
 const Kernels& best_kernels() {

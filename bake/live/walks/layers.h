@@ -58,19 +58,32 @@ struct Layers {
     summarise();
   }
 
-  // Returns the chance of mirroring at the upper surface, which gives equal shares to what reflects there and
-  // to what comes back from below.
-  double entry_chance(double reflectance, double transmittance) const {
-    const double both = reflectance + transmittance * worth_below;
-    return both > 0 ? reflectance / both : 1;
+  // Return means over the wavelengths, 0 to 1, which count by their `importance`.
+  double mean(const double* importance, const FilmPowers::Numbers& powers) const {
+    double sum = 0;
+    for (int k = 0; k < count; ++k) sum += importance[k] * powers[k];
+    return std::clamp(sum, 0.0, 1.0);
+  }
+  double mean_transmittance(const double* importance, const FilmPowers& film) const {
+    return is_layered() ? mean(importance, film.transmittance) : 1 - mean(importance, film.reflectance);
   }
 
-  // Returns that of mirroring elsewhere at a layered film. `reverse` is the reflectance for light that comes
-  // the other way: the chance is the same from both sides, so that a density may be followed in either
-  // direction.
-  static double mirror_chance(double reflectance, double transmittance, double reverse) {
-    const double mean = (reflectance + reverse) / 2;
-    return mean + transmittance > 0 ? mean / (mean + transmittance) : 1;
+  // Returns the chance of mirroring at the upper surface, which gives equal shares to what reflects there and
+  // to what comes back from below.
+  double entry_chance(const double* importance, const FilmPowers& film) const {
+    const double r = mean(importance, film.reflectance);
+    const double both = r + mean_transmittance(importance, film) * worth_below;
+    return both > 0 ? r / both : 1;
+  }
+
+  // Returns that of mirroring elsewhere. At a layered film it is the same from both sides, so that a density
+  // may be followed in either direction.
+  double mirror_chance(const double* importance, const FilmPowers& film) const {
+    const double r = mean(importance, film.reflectance);
+    if (!is_layered()) return r;
+    const double both_sides = (r + mean(importance, film.reverse)) / 2;
+    const double t = mean(importance, film.transmittance);
+    return both_sides + t > 0 ? both_sides / (both_sides + t) : 1;
   }
 
   bool is_layered() const { return curves != nullptr; }

@@ -43,6 +43,21 @@ inline void add_cases(int number, const Material& material, const Wavelengths& w
   }
 }
 
+// Cases of random materials, each from a stream of its own. film_of(rng, number, material) returns the
+// wavelengths of a material, which it may change.
+template <class FilmOf>
+std::vector<SweepCase> draw_cases(std::uint64_t seed, int first, int count, FilmOf film_of) {
+  std::vector<SweepCase> cases;
+  for (int number = first; number < first + count; ++number) {
+    Rng rng(seed, number);
+    RandomMaterials random(rng);
+    Material material = random.draw(number);
+    const Wavelengths wavelengths = film_of(rng, number, material);
+    add_cases(number, material, wavelengths, random, cases);
+  }
+  return cases;
+}
+
 inline Answer walked(const SweepCase& c, Technique technique, int estimates, std::uint64_t seed) {
   const Pfmc pfmc(c.material, c.wavelengths);
   Rng rng(seed, 4 * c.stream + (technique == Technique::bidirectional ? 1 : 0));

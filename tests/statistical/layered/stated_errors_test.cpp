@@ -11,15 +11,9 @@ namespace {
 using test::SweepCase;
 
 std::vector<SweepCase> draw_cases(int first, int count) {
-  std::vector<SweepCase> cases;
-  for (int number = first; number < first + count; ++number) {
-    Rng rng(41, number);
-    test::RandomMaterials random(rng);
-    Material material = random.draw(number);
-    const Wavelengths wavelengths = test::RandomFilms(rng).draw(number, material);
-    test::add_cases(number, material, wavelengths, random, cases);
-  }
-  return cases;
+  return test::draw_cases(41, first, count, [](Rng& rng, int number, Material& m) {
+    return test::RandomFilms(rng).draw(number, m);
+  });
 }
 
 // 200 materials. Two in three of the scores are independent, and tell the deviation to 0.03: one seed in a

@@ -17,14 +17,8 @@ using test::radians;
 using test::SweepCase;
 
 std::vector<SweepCase> draw_cases(int first, int count) {
-  std::vector<SweepCase> cases;
-  for (int number = first; number < first + count; ++number) {
-    Rng rng(31, number);
-    test::RandomMaterials random(rng);
-    const Material material = random.draw(number);
-    test::add_cases(number, material, Wavelengths::rgb3(material), random, cases);
-  }
-  return cases;
+  return test::draw_cases(31, first, count,
+                          [](Rng&, int, const Material& m) { return Wavelengths::rgb3(m); });
 }
 
 // 200 materials. Two in three of the scores are independent, and tell the deviation to 0.03: one seed in a

@@ -92,36 +92,37 @@ std::vector<Material> media(Transmission transmission) {
   return all;
 }
 
+// Calls visit(design, curves, cosine, k) at random cosines and wavelengths of all films without spread.
+template <class Visit>
+void each_film(Transmission transmission, Rng& rng, Visit visit) {
+  for (const Material& material : media(transmission))
+    for (const auto& design : test::layered_films(material)) {
+      if (design.material.thickness_spread > 0) continue;
+      const FilmCurves curves(design.material, design.wavelengths);
+      for (int i = 0; i < 300; ++i) visit(design, curves, cosine_from(rng), static_cast<std::size_t>(i % 3));
+    }
+}
+
 TEST(FilmCurves, AreTheClosedFormFromOutside) {
   Rng rng(1, 0);
   for (const Transmission transmission : {Transmission::refract, Transmission::straight})
-    for (const Material& material : media(transmission))
-      for (const auto& design : test::layered_films(material)) {
-        if (design.material.thickness_spread > 0) continue;
-        const FilmCurves curves(design.material, design.wavelengths);
-        for (int i = 0; i < 300; ++i) {
-          const double cosine = cosine_from(rng);
-          const std::size_t k = i % 3;
-          Powers expected = passing(stack_of(design, k), Side::outside, cosine, design.wavelengths.nm[k]);
-          // Beyond the angle at which base_ior reflects totally nothing passes at any wavelength.
-          if (refracted_cosine_squared(material.exterior_ior, material.base_ior, cosine) <= 0)
-            expected = {expected.reflectance + expected.transmittance, 0,
-                        expected.reflectance + expected.transmittance};
-          expect_powers(curves, Side::outside, cosine, k, expected, design.name);
-        }
-      }
+    each_film(transmission, rng, [](const auto& design, const auto& curves, double cosine, std::size_t k) {
+      const Material& material = design.material;
+      Powers expected = passing(stack_of(design, k), Side::outside, cosine, design.wavelengths.nm[k]);
+      // Beyond the angle at which base_ior reflects totally nothing passes at any wavelength.
+      if (refracted_cosine_squared(material.exterior_ior, material.base_ior, cosine) <= 0)
+        expected = {expected.reflectance + expected.transmittance, 0,
+                    expected.reflectance + expected.transmittance};
+      expect_powers(curves, Side::outside, cosine, k, expected, design.name);
+    });
 }
 
 TEST(FilmCurves, AreTheReversedStackFromBelow) {
   Rng rng(2, 0);
   int total = 0;
-  for (const Material& material : media(Transmission::refract))
-    for (const auto& design : test::layered_films(material)) {
-      if (design.material.thickness_spread > 0) continue;
-      const FilmCurves curves(design.material, design.wavelengths);
-      for (int i = 0; i < 300; ++i) {
-        const double cosine = cosine_from(rng);
-        const std::size_t k = i % 3;
+  each_film(
+      Transmission::refract, rng, [&](const auto& design, const auto& curves, double cosine, std::size_t k) {
+        const Material& material = design.material;
         const FilmStack stack = stack_of(design, k);
         const double nm = design.wavelengths.nm[k];
         const double outside2 = refracted_cosine_squared(material.base_ior, material.exterior_ior, cosine);
@@ -133,28 +134,22 @@ TEST(FilmCurves, AreTheReversedStackFromBelow) {
           expect_powers(curves, Side::inside, cosine, k, {r, 0, r}, design.name + " totally");
           ++total;
         }
-      }
-    }
+      });
   EXPECT_GT(total, 300);
 }
 
 // Light does not bend: the cosine below is that outside.
 TEST(FilmCurves, StraightLightFromBelowMeetsTheReversedStackAtTheSameAngle) {
   Rng rng(3, 0);
-  for (const Material& material : media(Transmission::straight))
-    for (const auto& design : test::layered_films(material)) {
-      if (design.material.thickness_spread > 0) continue;
-      const FilmCurves curves(design.material, design.wavelengths);
-      for (int i = 0; i < 300; ++i) {
-        const double cosine = cosine_from(rng);
-        if (refracted_cosine_squared(material.exterior_ior, material.base_ior - 0.02, cosine) < 1e-5)
-          continue;
-        const std::size_t k = i % 3;
-        expect_powers(curves, Side::inside, cosine, k,
-                      passing(stack_of(design, k), Side::inside, cosine, design.wavelengths.nm[k]),
-                      design.name);
-      }
-    }
+  each_film(Transmission::straight, rng,
+            [](const auto& design, const auto& curves, double cosine, std::size_t k) {
+              const Material& material = design.material;
+              if (refracted_cosine_squared(material.exterior_ior, material.base_ior - 0.02, cosine) < 1e-5)
+                return;
+              expect_powers(curves, Side::inside, cosine, k,
+                            passing(stack_of(design, k), Side::inside, cosine, design.wavelengths.nm[k]),
+                            design.name);
+            });
 }
 
 // Where what is above reflects totally and layers absorb, less than all comes back.

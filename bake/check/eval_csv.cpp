@@ -15,8 +15,8 @@
 #include "bake/check/walked_mean.h"
 #include "bake/live/exact/exact.h"
 #include "bake/live/pfmc.h"
-#include "bake/optics/layered/layered_film.h"
 #include "sunbeam/core/error.h"
+#include "sunbeam/detail/layered_film.h"
 #include "sunbeam/table_bsdf.h"
 
 namespace sunbeam {

@@ -8,8 +8,8 @@
 #include <ostream>
 
 #include "bake/optics/dispersion/optical_index.h"
-#include "bake/optics/film_stack.h"
 #include "sunbeam/core/error.h"
+#include "sunbeam/detail/film_stack.h"
 #include "sunbeam/detail/text.h"
 
 namespace sunbeam {

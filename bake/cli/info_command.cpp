@@ -8,9 +8,9 @@
 #include "bake/cli/json_text.h"
 #include "bake/cli/separate_files.h"
 #include "bake/live/estimator.h"
-#include "bake/optics/layered/layered_film.h"
 #include "bake/recipe/recipe.h"
 #include "sunbeam/detail/file.h"
+#include "sunbeam/detail/layered_film.h"
 #include "sunbeam/detail/text.h"
 #include "sunbeam/table_vdb.h"
 

@@ -61,14 +61,14 @@ Rgb Pfmc::fold(const double* values) const {
   return sum;
 }
 
-FilmPowers Pfmc::film_at(walk::Side side, double cosine) const {
+FilmPowers Pfmc::film_at(sunbeam::Side side, double cosine) const {
   FilmPowers powers;
   cosine = std::clamp(cosine, 0.0, 1.0);
   if (layers_.is_layered()) {
     layers_.curves->at(side, cosine, layers_.phases.numbers(), powers);
     return powers;
   }
-  const walk::FilmSide& film = side == walk::Side::outside ? layers_.film : layers_.film_below;
+  const walk::FilmSide& film = side == sunbeam::Side::outside ? layers_.film : layers_.film_below;
   const walk::FilmPackets<double> lanes(film, layers_.phases, cosine);
   lanes.reflectances([&](int k, double r) {
     powers.reflectance[k] = r;
@@ -78,7 +78,7 @@ FilmPowers Pfmc::film_at(walk::Side side, double cosine) const {
 }
 
 Rgb Pfmc::film_reflectance(double cos_exterior) const {
-  return fold(film_at(walk::Side::outside, cos_exterior).reflectance.data());
+  return fold(film_at(sunbeam::Side::outside, cos_exterior).reflectance.data());
 }
 
 Rgb Pfmc::first(const Vec3& wo, const Vec3& wi) const {
@@ -90,14 +90,14 @@ Rgb Pfmc::first(const Vec3& wo, const Vec3& wi) const {
 Rgb Pfmc::dirac(const Vec3& wo) const { return layers_.is_smooth() ? film_reflectance(wo.z) : Rgb(); }
 
 double Pfmc::reflect_chance(double cos_exterior) const {
-  return layers_.entry_chance(importance_.data(), film_at(walk::Side::outside, cos_exterior));
+  return layers_.entry_chance(importance_.data(), film_at(sunbeam::Side::outside, cos_exterior));
 }
 
 double Pfmc::leaving_shape(double cos_exterior) const {
   if (family_ != Family::plain) return cos_exterior;
   const double below2 = 1 - square(layers_.index_ratio) * (1 - square(cos_exterior));
   if (below2 <= 0) return 0;
-  const FilmPowers film = film_at(walk::Side::outside, cos_exterior);
+  const FilmPowers film = film_at(sunbeam::Side::outside, cos_exterior);
   const double passes = layers_.mean_transmittance(importance_.data(), film);
   return passes * layers_.open_guide.density(below2) * cos_exterior;
 }

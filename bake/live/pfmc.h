@@ -106,7 +106,7 @@ class Pfmc {
 
   using Powers = walk::Spectrum<double>;
   Rgb fold(const double* values) const;
-  FilmPowers film_at(walk::Side side, double cosine) const;
+  FilmPowers film_at(sunbeam::Side side, double cosine) const;
   std::optional<BsdfSample> sample_plain(const Vec3& wo, Rng& rng, const Pfmc& below) const;
   double estimate_plain_pdf(const Vec3& wo, const Vec3& wi, Rng& rng, const Pfmc& below) const;
   std::optional<BsdfSample> sample_below(double cosine, Powers& throughput, Rng& rng) const;

@@ -27,7 +27,7 @@ Vec3 facet_normal(const Vec3& w, const Lane::Normal& facet, Rng& rng) {
 std::optional<BsdfSample> Pfmc::sample_plain(const Vec3& wo, Rng& rng, const Pfmc& below) const {
   const Lane events(layers_);
   const auto facet = events.meet(wo.z, rng);
-  const FilmPowers film = film_at(walk::Side::outside, facet.cosine);
+  const FilmPowers film = film_at(sunbeam::Side::outside, facet.cosine);
   const double reflect_chance = layers_.entry_chance(importance_.data(), film);
   if (rng.uniform() < reflect_chance) {
     const auto up = events.mirror(wo.z, facet);
@@ -43,7 +43,7 @@ std::optional<BsdfSample> Pfmc::sample_plain(const Vec3& wo, Rng& rng, const Pfm
     for (int k = 0; k < below.layers_.count; ++k) throughput[k] = entering.transmittance[k] * share;
     return below.sample_below(crossing.cosine, throughput, rng);
   };
-  return &below == this ? go_on(film) : go_on(below.film_at(walk::Side::outside, facet.cosine));
+  return &below == this ? go_on(film) : go_on(below.film_at(sunbeam::Side::outside, facet.cosine));
 }
 
 // A walk that reaches the base at `cosine`.
@@ -56,7 +56,7 @@ std::optional<BsdfSample> Pfmc::sample_below(double cosine, Powers& throughput, 
     events.attenuate(path, throughput);
 
     const auto facet = events.meet(up.cosine, rng);
-    const FilmPowers film = film_at(walk::Side::inside, facet.cosine);
+    const FilmPowers film = film_at(sunbeam::Side::inside, facet.cosine);
     const double reflect_chance = layers_.mirror_chance(importance_.data(), film);
     if (rng.uniform() >= reflect_chance) {
       const auto out = events.cross(up.cosine, facet, 1 / layers_.index_ratio);
@@ -82,7 +82,7 @@ double Pfmc::leave_pdf(const Vec3& wi, Rng& rng, double& cosine) const {
   cosine = crossing.cosine;
   if (crossing.weight == 0) return 0;
   const double pass_chance =
-      1 - layers_.mirror_chance(importance_.data(), film_at(walk::Side::outside, facet.cosine));
+      1 - layers_.mirror_chance(importance_.data(), film_at(sunbeam::Side::outside, facet.cosine));
   if (!layers_.bends) return pass_chance;
   const double solid_angles = square(layers_.index_ratio) * wi.z / cosine;
   return pass_chance * solid_angles * events.g1_ratio(cosine, wi.z);
@@ -111,7 +111,7 @@ double Pfmc::pdf_below(const Vec3& wi, Rng& rng) const {
     const auto up = events.leave_base(layers_.open_guide, rng);
     const auto facet = events.meet(up.cosine, rng);
     if (events.mirror(up.cosine, facet).weight == 0) return pdf;
-    const FilmPowers film = film_at(walk::Side::inside, facet.cosine);
+    const FilmPowers film = film_at(sunbeam::Side::inside, facet.cosine);
     if (rng.uniform() >= layers_.mirror_chance(importance_.data(), film)) return pdf;
   }
 }

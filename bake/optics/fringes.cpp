@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "bake/optics/compiler.h"
+#include "sunbeam/detail/vector_clones.h"
 
 namespace sunbeam {
 namespace {

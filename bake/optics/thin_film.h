@@ -21,12 +21,10 @@
 #pragma once
 
 #include "sunbeam/core/vec.h"
+#include "sunbeam/detail/refraction.h"
 #include "sunbeam/material.h"
 
 namespace sunbeam {
-
-// Returns the index of the medium that light would pass into.
-inline double bending_base_ior(const Material& m) { return m.is_opaque() ? m.exterior_ior : m.base_ior; }
 
 struct ThinFilm {
   double exterior_ior;  // n0, of the medium the light comes from
@@ -34,7 +32,6 @@ struct ThinFilm {
   double base_ior;      // n2, of the medium beyond
   double thickness_nm;  // d0 >= 0
 
-  // Nothing passes into an opaque base: its geometry is that of a base which does not bend light.
   static ThinFilm of(const Material& m) {
     return {m.exterior_ior, m.film_ior, bending_base_ior(m), m.film_thickness_nm};
   }
@@ -60,12 +57,6 @@ inline double bending_index_ratio(const Material& material) {
   constexpr double kIndexMatch = 1e-7;
   const double ratio = material.exterior_ior / bending_base_ior(material);
   return material.transmission == Transmission::straight || std::abs(ratio - 1) <= kIndexMatch ? 1 : ratio;
-}
-
-// Returns the squared cosine on the far side by Snell's law; it is negative under total reflection. The
-// formula is arranged so that equal media keep every digit at grazing.
-inline double refracted_cosine_squared(double ior_from, double ior_to, double cos_from) {
-  return ((ior_to - ior_from) * (ior_to + ior_from) + square(ior_from * cos_from)) / square(ior_to);
 }
 
 }  // namespace sunbeam

@@ -2,8 +2,8 @@
 // the product's. Uneven platelets are drawn anew at each meeting, and nothing is tabulated. Slow.
 #pragma once
 
-#include "bake/optics/film_stack.h"
 #include "sunbeam/core/rng.h"
+#include "sunbeam/detail/film_stack.h"
 #include "sunbeam/detail/wavelengths.h"
 
 namespace sunbeam::test {

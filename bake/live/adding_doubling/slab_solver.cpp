@@ -5,10 +5,10 @@
 #include <numeric>
 
 #include "bake/live/exact/resolvent.h"
-#include "bake/optics/compiler.h"
-#include "bake/optics/quadrature.h"
 #include "sunbeam/core/error.h"
+#include "sunbeam/detail/quadrature.h"
 #include "sunbeam/detail/text.h"
+#include "sunbeam/detail/vector_clones.h"
 
 namespace sunbeam {
 namespace {
@@ -290,10 +290,10 @@ std::vector<double> SlabSolver::transmittances(std::span<const double> orders, s
 }
 
 // By (mode, row, node, order).
-std::vector<double> SlabSolver::moments(const std::vector<FacetList>& rows, walk::Side side, Part part,
+std::vector<double> SlabSolver::moments(const std::vector<FacetList>& rows, sunbeam::Side side, Part part,
                                         const walk::FilmPhases& phases) const {
   const walk::Kernels& kernels = walk::best_kernels();
-  const walk::FilmSide& film = side == walk::Side::outside ? film_ : film_below_;
+  const walk::FilmSide& film = side == sunbeam::Side::outside ? film_ : film_below_;
   const std::size_t row_size = nodes_.cosine.size() * phases.count, mode_size = rows.size() * row_size;
   std::vector<double> moments(modes_ * mode_size);
   FilmPowers powers;
@@ -313,9 +313,9 @@ SlabSolver::Fringes::Fringes(const SlabSolver& solver, std::span<const double> o
 
 SlabSolver::Fringes::Fringes(const SlabSolver& solver, const walk::FilmPhases& phases) : solver_(solver) {
   const std::vector<double> entry =
-      solver.moments(solver.entry_, walk::Side::outside, Part::transmittance, phases);
+      solver.moments(solver.entry_, sunbeam::Side::outside, Part::transmittance, phases);
   const std::vector<double> back =
-      solver.moments(solver.thrown_back_, walk::Side::inside, Part::reflectance, phases);
+      solver.moments(solver.thrown_back_, sunbeam::Side::inside, Part::reflectance, phases);
   const int n = solver.nodes_.size(), cosines = static_cast<int>(solver.cosines_.size());
   modes_.resize(phases.count, std::vector<Mode>(solver.modes_, {Matrix(cosines, n), Matrix(n)}));
   const double *e = entry.data(), *f = back.data();

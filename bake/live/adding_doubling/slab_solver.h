@@ -165,7 +165,7 @@ class SlabSolver {
   Facet facet(double cosine, double share, const Vec3& on) const;
   int modes_above(double faintest) const;
   enum class Part { reflectance, transmittance };
-  std::vector<double> moments(const std::vector<FacetList>& rows, walk::Side side, Part part,
+  std::vector<double> moments(const std::vector<FacetList>& rows, sunbeam::Side side, Part part,
                               const walk::FilmPhases& phases) const;
   Fringes fringes(double film_thickness_nm, const Wavelengths& wavelengths) const;
   Phase phase(int mode) const;

@@ -9,7 +9,7 @@
 #include <array>
 #include <vector>
 
-#include "bake/optics/quadrature.h"
+#include "sunbeam/detail/quadrature.h"
 
 namespace sunbeam {
 

@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "bake/live/exact/exact.h"
-#include "bake/live/film/panel_curve.h"
 #include "sunbeam/bsdf.h"
 #include "sunbeam/detail/ggx.h"
+#include "sunbeam/detail/panel_curve.h"
 #include "sunbeam/detail/piecewise.h"
 
 namespace sunbeam {

@@ -14,8 +14,8 @@
 #include <span>
 #include <vector>
 
-#include "bake/optics/quadrature.h"
 #include "sunbeam/detail/ggx.h"
+#include "sunbeam/detail/quadrature.h"
 
 namespace sunbeam {
 

@@ -53,21 +53,21 @@ FilmIntegrals::FilmIntegrals(const Material& material, const Wavelengths& three,
       turns_(material.roughness) {}
 
 // Phase difference of neighbouring reflections, radians, at the shortest wavelength.
-double FilmIntegrals::phase(walk::Side side, double cosine) const {
+double FilmIntegrals::phase(sunbeam::Side side, double cosine) const {
   const ThinFilm& film = film_.outline_from(side);
   const double cos1_squared = refracted_cosine_squared(film.exterior_ior, film.film_ior, cosine);
   return 4 * kPi * film.film_ior * film.thickness_nm / min_component(film_.wavelengths_nm()) *
          std::sqrt(std::max(0.0, cos1_squared));
 }
 
-int FilmIntegrals::oscillation_panels(walk::Side side, double low, double high) const {
+int FilmIntegrals::oscillation_panels(sunbeam::Side side, double low, double high) const {
   return 1 + static_cast<int>((phase(side, high) - phase(side, low)) / kPhaseStep);
 }
 
 // Calls visit(t, weight, parts) for nodes t, of weight / parts, of low + (high - low) smooth_step(t) that
 // resolve the film's powers.
 template <class F>
-void FilmIntegrals::visit_oscillations(walk::Side side, double low, double high, F visit) const {
+void FilmIntegrals::visit_oscillations(sunbeam::Side side, double low, double high, F visit) const {
   if (!film_.is_layered()) {
     const int parts = oscillation_panels(side, low, high);
     for (int part = 0; part < parts; ++part)
@@ -88,7 +88,7 @@ void FilmIntegrals::visit_oscillations(walk::Side side, double low, double high,
 // More where a wide lobe sees a thick film oscillate.
 int FilmIntegrals::visible_nodes() const {
   if (film_.is_layered()) return resolution_.visible;
-  const walk::Side outside = walk::Side::outside;
+  const sunbeam::Side outside = sunbeam::Side::outside;
   const double waves = (phase(outside, 1) - phase(outside, 0)) * std::min(1.0, 4 * wider());
   const int wanted = resolution_.visible + static_cast<int>(kVisibleNodesPerRadian * waves);
   return std::min(wanted, std::max(kMaxVisibleNodes, resolution_.visible));
@@ -104,7 +104,7 @@ Vec3 FilmIntegrals::turned(const Vec3& w) const {
 template <class F>
 void FilmIntegrals::visit_visible(const Vec3& w, bool only_mirrored, F visit) const {
   const Vec3 from = turned(w);
-  const VisibleNormals visible(from, material_.roughness, film_.outline_from(walk::Side::outside),
+  const VisibleNormals visible(from, material_.roughness, film_.outline_from(sunbeam::Side::outside),
                                index_ratio_);
   for_each_node(visible.azimuth_edges(), visible_azimuths_, [&](double azimuth, double dazimuth) {
     auto edges = visible.polar_edges(azimuth);
@@ -118,7 +118,7 @@ void FilmIntegrals::visit_visible(const Vec3& w, bool only_mirrored, F visit) co
 
 // Those of a layered film, for light along w; w is at azimuth 0 if the film is isotropic.
 FacetRings FilmIntegrals::rings(const Vec3& w) const {
-  const walk::Side outside = walk::Side::outside;
+  const sunbeam::Side outside = sunbeam::Side::outside;
   const double critical = critical_cosine(film_.outline_from(outside));
   return {w, {material_.roughness, index_ratio_, critical}, film_.edges(outside), rings_};
 }
@@ -248,7 +248,7 @@ void FilmIntegrals::visit_facets(Event event, F visit) const {
 // Int ... 2 pi mu dmu over the cosines below a smooth film: calls visit(mu, powers, 2 pi mu dmu).
 template <class F>
 void FilmIntegrals::visit_smooth_film(F visit) const {
-  const walk::Side inside = walk::Side::inside;
+  const sunbeam::Side inside = sunbeam::Side::inside;
   const double critical = critical_cosine(film_.outline_from(inside));
   const auto visit_between = [&](double low, double high) {
     if (high <= low) return;

@@ -73,18 +73,18 @@ class FilmIntegrals {
   };
   enum class Event { reflection_below, crossing };
 
-  static walk::Side side_of(Event event) {
-    return event == Event::crossing ? walk::Side::outside : walk::Side::inside;
+  static sunbeam::Side side_of(Event event) {
+    return event == Event::crossing ? sunbeam::Side::outside : sunbeam::Side::inside;
   }
   // Returns the film's powers for light from outside.
-  FilmPower power(double facet_cosine) const { return film_.at(walk::Side::outside, facet_cosine); }
-  double phase(walk::Side side, double cosine) const;
+  FilmPower power(double facet_cosine) const { return film_.at(sunbeam::Side::outside, facet_cosine); }
+  double phase(sunbeam::Side side, double cosine) const;
   int visible_nodes() const;
   Vec3 turned(const Vec3& w) const;
   FacetRings rings(const Vec3& w) const;
-  int oscillation_panels(walk::Side side, double low, double high) const;
+  int oscillation_panels(sunbeam::Side side, double low, double high) const;
   template <class F>
-  void visit_oscillations(walk::Side side, double low, double high, F visit) const;
+  void visit_oscillations(sunbeam::Side side, double low, double high, F visit) const;
   template <class F>
   void visit_smooth_film(F visit) const;
   std::vector<Rgb> moments(Event event, double low, double high) const;

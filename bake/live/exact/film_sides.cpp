@@ -33,11 +33,11 @@ FilmSides::FilmSides(const Material& material, const Wavelengths& three)
       wavelengths_nm_(three.triple(three.nm, 0)) {
   if (!sunbeam::is_layered(material, three)) return;
   curves_.emplace(material, three);
-  edges_outside_ = curves_->edges(walk::Side::outside);
-  edges_inside_ = curves_->edges(walk::Side::inside);
+  edges_outside_ = curves_->edges(sunbeam::Side::outside);
+  edges_inside_ = curves_->edges(sunbeam::Side::inside);
 }
 
-FilmPower FilmSides::at(walk::Side side, double cosine) const {
+FilmPower FilmSides::at(sunbeam::Side side, double cosine) const {
   if (!is_layered()) return airy(outline_from(side), cosine, wavelengths_nm_);
   constexpr std::array three{0, 1, 2};
   FilmPowers powers;

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "bake/live/film/film_curves.h"
 #include "bake/optics/thin_film.h"
+#include "sunbeam/detail/film_curves.h"
 
 namespace sunbeam {
 
@@ -27,16 +27,16 @@ class FilmSides {
   bool is_layered() const { return curves_.has_value(); }
 
   // Returns the powers for light that travels on this side at a cosine with the normal.
-  FilmPower at(walk::Side side, double cosine) const;
+  FilmPower at(sunbeam::Side side, double cosine) const;
 
   // Returns the cosines, from 0 to 1, between which the powers of a layered film are as good as polynomials.
-  const std::vector<double>& edges(walk::Side side) const {
-    return side == walk::Side::outside ? edges_outside_ : edges_inside_;
+  const std::vector<double>& edges(sunbeam::Side side) const {
+    return side == sunbeam::Side::outside ? edges_outside_ : edges_inside_;
   }
 
   // Returns the outline as light on this side meets it; in "straight" mode it is that of the outside.
-  const ThinFilm& outline_from(walk::Side side) const {
-    return side == walk::Side::outside ? outside_ : inside_;
+  const ThinFilm& outline_from(sunbeam::Side side) const {
+    return side == sunbeam::Side::outside ? outside_ : inside_;
   }
   const Rgb& wavelengths_nm() const { return wavelengths_nm_; }
 

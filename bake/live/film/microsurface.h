@@ -14,11 +14,12 @@
 
 #include "sunbeam/core/rng.h"
 #include "sunbeam/detail/ggx.h"
+#include "sunbeam/detail/side.h"
 
 namespace sunbeam::walk {
 
-enum class Side { outside, inside };
-constexpr Side opposite(Side side) { return side == Side::outside ? Side::inside : Side::outside; }
+using sunbeam::opposite;
+using sunbeam::Side;
 
 // Says where light is: between two facets, or about to meet one at this depth. Directions are in the frame of
 // the side.

@@ -22,11 +22,7 @@
 
 namespace sunbeam {
 
-// Returns the cosine of total reflection; 0 if there is none. For a film it is that at its base, as seen from
-// its exterior.
-inline double critical_cosine(double ior_from, double ior_to) {
-  return std::sqrt(std::max(0.0, 1 - square(ior_to / ior_from)));
-}
+// Returns the cosine of total reflection at the film's base, as seen from its exterior; 0 if there is none.
 inline double critical_cosine(const ThinFilm& film) {
   return critical_cosine(film.exterior_ior, film.base_ior);
 }

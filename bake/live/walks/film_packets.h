@@ -9,9 +9,9 @@
 
 #include <array>
 
-#include "bake/live/film/film_curves.h"
 #include "bake/live/walks/packet.h"
 #include "bake/optics/thin_film.h"
+#include "sunbeam/detail/film_curves.h"
 #include "sunbeam/detail/wavelengths.h"
 
 namespace sunbeam::walk {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "bake/optics/layered/layered_film.h"
+#include "sunbeam/detail/layered_film.h"
 
 namespace sunbeam {
 namespace {

@@ -46,7 +46,8 @@
 namespace sunbeam {
 inline namespace v1 {
 
-inline constexpr int kTableSchemaVersion = 3, kOldestTableSchemaVersion = 2;  // written; read
+// The versions of the files that are read; tables whose film is one clear layer are written in the second.
+inline constexpr int kTableSchemaVersion = 4, kSingleFilmSchemaVersion = 3, kOldestTableSchemaVersion = 2;
 
 // Says what the array `remainder` of a dense table stands in: see above.
 enum class FrameKind { closed, none };
@@ -87,8 +88,9 @@ struct Table {
   // tool_version, encoding, error.<name>; with spectrum "full" also color_space, illuminant, wavelengths.
   std::map<std::string, std::string> info;
 
-  // Holds the version of the file that the table came from; one that is written has kTableSchemaVersion.
-  int schema_version = kTableSchemaVersion;
+  // Holds the version of the file that the table came from, or that a bake gives it: kTableSchemaVersion if
+  // the film is layered (layered_film.h). One of an older version is written in kSingleFilmSchemaVersion.
+  int schema_version = kSingleFilmSchemaVersion;
 
   // Returns true if colours are spectra folded into color_space(), where components may be negative; else R,
   // G, B are three wavelengths (spectrum "rgb3").

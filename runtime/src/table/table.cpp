@@ -27,8 +27,9 @@ ColorSpace Table::color_space() const {
 
 std::vector<const NdArray*> Table::arrays() const {
   std::vector<const NdArray*> arrays;
-  for (const NdArray* array : {&factors.arrival, &factors.exchange, &film_reflectance, &film_transmittance,
-                               &first_visit, &remainder, &rest_stderr, &factors.returned})
+  for (const NdArray* array : {&factors.arrival, &factors.crossing, &factors.exchange, &factors.facet_cosine,
+                               &film_reflectance, &film_transmittance, &first_visit, &remainder, &rest_stderr,
+                               &factors.return_cosine, &factors.returned, &factors.returning})
     if (!array->empty()) arrays.push_back(array);
   return arrays;
 }

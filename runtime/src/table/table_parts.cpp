@@ -344,7 +344,7 @@ Attributes attributes_of(const TableView& view) {
     throw Error("an empty table cannot be written");
   for (const ArrayView& array : arrays) require_finite(array);
   Attributes attributes = table.info;
-  attributes["schema_version"] = std::to_string(kTableSchemaVersion);
+  attributes["schema_version"] = std::to_string(std::max(table.schema_version, kSingleFilmSchemaVersion));
   attributes["symmetry"] = name_of(table.symmetry);
   for (const auto& key : material_keys()) {
     const std::string text = get_text(table.material, key);

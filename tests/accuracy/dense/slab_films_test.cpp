@@ -4,10 +4,10 @@
 
 #include <gmock/gmock.h>
 
-#include "bake/optics/quadrature.h"
 #include "bake/optics/spectrum.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/axis.h"
+#include "sunbeam/detail/quadrature.h"
 
 namespace sunbeam {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "bake/check/verify.h"
 #include "bake/live/pfmc.h"
-#include "bake/optics/quadrature.h"
 #include "sunbeam/core/error.h"
+#include "sunbeam/detail/quadrature.h"
 #include "tests/accuracy/support.h"
 #include "tests/support/layered_films.h"
 

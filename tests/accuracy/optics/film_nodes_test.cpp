@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "bake/optics/layered/layered_film.h"
 #include "sunbeam/core/rng.h"
+#include "sunbeam/detail/layered_film.h"
 
 namespace sunbeam {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "bake/live/exact/exact.h"
 #include "bake/live/exact/exact_bsdf.h"
-#include "bake/optics/film_stack.h"
 #include "sunbeam/core/rng.h"
+#include "sunbeam/detail/film_stack.h"
 #include "tests/support/bsdf_checks.h"
 #include "tests/support/layered_films.h"
 #include "tests/support/materials.h"

@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "bake/live/exact/exact.h"
-#include "bake/live/film/film_curves.h"
 #include "bake/live/live_bsdf.h"
+#include "sunbeam/detail/film_curves.h"
 #include "tests/support/estimates.h"
 #include "tests/support/layered_materials.h"
 #include "tests/support/plain_stack.h"
@@ -138,7 +138,7 @@ TEST(LayeredLimits, PowersAreMeansOverPlatelets) {
         for (const double cosine : {1.0, 0.8, 0.5, 0.2}) {
           if (!is_outside && c.material.is_opaque()) continue;
           FilmPowers found;
-          curves.at(is_outside ? walk::Side::outside : walk::Side::inside, cosine, numbers, found);
+          curves.at(is_outside ? sunbeam::Side::outside : sunbeam::Side::inside, cosine, numbers, found);
           for (std::size_t k = 0; k < 3; ++k) {
             const auto [r, t] = mean_powers(c, k, is_outside, cosine);
             EXPECT_NEAR(found.reflectance[k], r, 1e-7) << c.name << ' ' << cosine << ' ' << k;

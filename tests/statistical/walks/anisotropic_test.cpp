@@ -4,7 +4,7 @@
 
 #include "bake/live/exact/exact.h"
 #include "bake/live/live_bsdf.h"
-#include "bake/optics/quadrature.h"
+#include "sunbeam/detail/quadrature.h"
 #include "tests/support/configurations.h"
 #include "tests/support/estimates.h"
 #include "tests/support/plain_slab.h"

@@ -1,19 +1,18 @@
 // The powers of layered films over the cosine against their closed form from either side.
-#include "bake/live/film/film_curves.h"
+#include "sunbeam/detail/film_curves.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "bake/optics/quadrature.h"
 #include "bake/optics/thin_film.h"
 #include "sunbeam/core/rng.h"
+#include "sunbeam/detail/quadrature.h"
 #include "tests/support/layered_films.h"
 
 namespace sunbeam {
 namespace {
 
-using walk::Side;
 
 constexpr double kError = 1e-10;  // that the header states
 constexpr std::array kAll{0, 1, 2};

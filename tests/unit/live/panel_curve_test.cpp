@@ -1,4 +1,4 @@
-#include "bake/live/film/panel_curve.h"
+#include "sunbeam/detail/panel_curve.h"
 
 #include <gtest/gtest.h>
 

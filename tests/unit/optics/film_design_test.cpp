@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bake/optics/layered/layered_film.h"
 #include "bake/optics/spectrum.h"
+#include "sunbeam/detail/layered_film.h"
 #include "tests/support/error_of.h"
 
 namespace sunbeam {

@@ -1,4 +1,4 @@
-#include "bake/optics/film_stack.h"
+#include "sunbeam/detail/film_stack.h"
 
 #include <gtest/gtest.h>
 

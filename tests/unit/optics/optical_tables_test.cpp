@@ -10,8 +10,8 @@
 #include <filesystem>
 
 #include "bake/optics/dispersion/optical_index.h"
-#include "bake/optics/film_stack.h"
 #include "sunbeam/detail/file.h"
+#include "sunbeam/detail/film_stack.h"
 #include "sunbeam/detail/text.h"
 
 namespace sunbeam {

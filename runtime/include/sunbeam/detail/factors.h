@@ -17,6 +17,17 @@
 // term of "product" is one visit of the base through facets that do not bend light, exactly there. Colours
 // are rest = sum_k weight_k rest_k. docs/reference/table_format.md describes the arrays.
 //
+// A layered film (layered_film.h) is kept as it is, layer by layer, and its powers are evaluated when a table
+// is bound. Facets know of it only through the cosine c' that light makes with them, so its arrays say how
+// light is spread over c'. With v the share of the facets visible from w that w meets at a cosine below c',
+//
+//   rough film:  A = exp(-tau/m~) Int_0^1 T(facet_cosine) exp(crossing) dv,
+//   path "sum":  returned = Int_0^1 R_below(return_cosine) returning dv,
+//
+// where the second pair is of facets that diffuse light meets from below. `crossing` is ln of the mean, over
+// the facets of that c', of share exp(-tau/m), plus tau/m~. Since indices may depend on the wavelength,
+// `exchange` of a layered film has it as an axis.
+//
 // fringe_order = 2 n1 d cos_1 / lambda, the phase between successive reflections in the film over 2 pi, at
 // the direction itself for `arrival`, at normal incidence for the other two. At a fixed order A varies slowly
 // with the direction.
@@ -35,16 +46,23 @@ inline namespace v1 {
 // Holds the arrays, with one number a cell. Directions are (cos_theta, phi), phi in [0, pi/2] for an
 // anisotropic film and the one node 0 for an isotropic one.
 struct Factors {
-  std::vector<Axis> grid;   // the parameters as the recipe spans them, in the order of kParameterNames
-  Wavelengths wavelengths;  // albedo of the base and relative absorption at each, and their colours
+  std::vector<Axis> grid;  // the parameters as the recipe spans them, in the order of kParameterNames
+  Wavelengths
+      wavelengths;  // albedo of the base and relative absorption at each, their colours, and a layered film
 
   NdArray arrival;   // (base_ior, optical_depth, fringe_order, cos_theta, phi); empty for a smooth film;
                      // one optical depth where it does not matter (straight)
   NdArray returned;  // path "sum":     (base_ior, optical_depth, fringe_order)
   NdArray exchange;  // path "product": (base_ior, optical_depth, albedo, fringe_order, cos_theta_i, phi_i,
-                     //                  cos_theta_o, phi_o)
+                     //                  cos_theta_o, phi_o); layered: with wavelength_nm after albedo
 
-  bool empty() const { return returned.empty() && exchange.empty(); }
+  // Only layered films have these, rough ones the first two, path "sum" the last two.
+  NdArray facet_cosine;  // (theta, phi, facet_share)
+  NdArray crossing;  // (base_ior, optical_depth, theta, phi, facet_share); one optical depth as in `arrival`
+  NdArray return_cosine;  // (facet_share)
+  NdArray returning;      // (optical_depth, facet_share)
+
+  bool empty() const { return returned.empty() && exchange.empty() && returning.empty(); }
   bool operator==(const Factors&) const = default;
 };
 

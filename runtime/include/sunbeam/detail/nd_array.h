@@ -22,7 +22,7 @@ float round_to(Precision precision, double value);
 // Describes an array without its values: its name, axes and precision, and where a cell lies.
 class ArrayShape {
  public:
-  static constexpr std::size_t kMaxRank = 8;
+  static constexpr std::size_t kMaxRank = 9;
 
   ArrayShape() = default;
   // Throws Error if an axis is unsound, there are none or too many, or the array is too large. `channels` is

@@ -12,6 +12,7 @@
 #include <vector>
 
 namespace sunbeam {
+inline namespace v1 {
 
 // Evaluates a polynomial of degree 7 by Estrin's scheme, which keeps chains of operations short. The
 // coefficients are `stride` apart.
@@ -84,4 +85,5 @@ class PanelCurve {
   std::vector<std::size_t> first_panel_;  // by bin of x: the panel at its start
 };
 
+}  // namespace v1
 }  // namespace sunbeam

@@ -10,6 +10,7 @@
 #include "sunbeam/core/vec.h"
 
 namespace sunbeam {
+inline namespace v1 {
 
 struct GaussRule {
   std::vector<double> node, weight;  // nodes ascend
@@ -73,4 +74,5 @@ class GaussInterpolation {
   Weights barycentric_;
 };
 
+}  // namespace v1
 }  // namespace sunbeam

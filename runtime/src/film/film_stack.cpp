@@ -1,25 +1,29 @@
-#include "bake/optics/film_stack.h"
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wpsabi"  // long vectors are returned by functions that are inlined only
+#endif
+
+#include "sunbeam/detail/film_stack.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bake/optics/compiler.h"
-#include "bake/optics/quadrature.h"
-#include "bake/optics/thin_film.h"
+#include "runtime/src/base/lanes.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/vec.h"
+#include "sunbeam/detail/quadrature.h"
+#include "sunbeam/detail/refraction.h"
 #include "sunbeam/detail/text.h"
+#include "sunbeam/detail/vector_clones.h"
 
 namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 using Complex = std::complex<double>;
 constexpr Complex kI{0, 1};
 
-// Lanes are wavelengths, side by side. All functions of them are inlined, so that how processors pass them
-// does not matter.
-#pragma GCC diagnostic ignored "-Wpsabi"
-using Quad = double __attribute__((vector_size(32)));
+// Lanes are wavelengths, side by side.
+using Quad = Doubles4;
 
 // Processors differ in the alignment that they give to such vectors.
 struct alignas(32) ComplexQuad {
@@ -104,7 +108,7 @@ Complex thin_sine(Complex k, Complex delta, Complex turn) {
 
 SUNBEAM_INLINE LayerMatrix matrix_of(const LayerAngle& a, double factor) {
   const ComplexQuad turn = turn_of(a, factor), twice = product(turn, turn);
-  ComplexQuad sine = product({1 - twice.re, -twice.im}, a.per_2c);
+  ComplexQuad sine = product({1 - twice.re, Quad{} - twice.im}, a.per_2c);
   for (std::size_t lane = 0; lane < 4; ++lane) {
     const Complex delta = factor * Complex(a.delta.re[lane], a.delta.im[lane]);
     if (std::norm(delta) < 1e-6)
@@ -150,10 +154,10 @@ SUNBEAM_INLINE Transfer product(const Transfer& above, const Transfer& below) {
   Transfer t{product(above.s, below.s), product(above.p, below.p), above.damping + below.damping,
              above.log_scale + below.log_scale};
   const auto is_large = t.s.size() + t.p.size() > kLarge * kLarge;
-  const Quad factor = is_large ? Quad{} + 1 / kLarge : Quad{} + 1;
+  const Quad factor = select(is_large, Quad{} + 1 / kLarge, Quad{} + 1);
   t.s.scale(factor);
   t.p.scale(factor);
-  t.log_scale += is_large ? Quad{} + kLogLarge : Quad{};
+  t.log_scale += select(is_large, Quad{} + kLogLarge, Quad{});
   return t;
 }
 
@@ -198,9 +202,9 @@ struct Fields {
   SUNBEAM_INLINE void keep_finite() {
     const Quad size = squared_norm(s_e) + squared_norm(s_h) + squared_norm(p_h) + squared_norm(p_e);
     const auto is_large = size > kLarge * kLarge;
-    const Quad factor = is_large ? Quad{} + 1 / kLarge : Quad{} + 1;
+    const Quad factor = select(is_large, Quad{} + 1 / kLarge, Quad{} + 1);
     for (ComplexQuad* field : {&s_e, &s_h, &p_h, &p_e}) *field = {field->re * factor, field->im * factor};
-    log_scale += is_large ? Quad{} + kLogLarge : Quad{};
+    log_scale += select(is_large, Quad{} + kLogLarge, Quad{});
   }
 };
 
@@ -382,4 +386,5 @@ std::optional<double> reflectance_below(const FilmStack& stack, double cos_exter
   return stack_power(reversed, std::sqrt(c2_squared), wavelength_nm).reflectance;
 }
 
+}  // namespace v1
 }  // namespace sunbeam

@@ -1,4 +1,5 @@
-// This file holds what the kernels ask of the compiler (GCC and Clang).
+// This file holds what kernels ask of the compiler. Only GCC makes clones; other compilers than GCC and Clang
+// inline as they see fit.
 #pragma once
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -17,7 +18,7 @@
 // at load time. It gives the same bits, since neither reorders nor fuses operations.
 // SUNBEAM_FLAT_VECTOR_CLONES also inlines what the function calls, so that its parts are copied with it.
 // Clang loses the inline functions that only such copies call (seen with 22), so it makes none.
-#ifdef SUNBEAM_ADDRESS_SANITIZER
+#if defined(SUNBEAM_ADDRESS_SANITIZER) || !defined(__GNUC__)
 #define SUNBEAM_INLINE inline
 #define SUNBEAM_FLATTEN
 #else
@@ -25,7 +26,8 @@
 #define SUNBEAM_FLATTEN __attribute__((flatten))
 #endif
 
-#if defined(__x86_64__) && !defined(__clang__) && !defined(SUNBEAM_ADDRESS_SANITIZER)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(SUNBEAM_PORTABLE) && \
+    !defined(SUNBEAM_ADDRESS_SANITIZER)
 #define SUNBEAM_VECTOR_CLONES __attribute__((target_clones("default", "avx2")))
 #define SUNBEAM_FLAT_VECTOR_CLONES SUNBEAM_VECTOR_CLONES SUNBEAM_FLATTEN
 #else

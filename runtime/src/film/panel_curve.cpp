@@ -1,13 +1,14 @@
-#include "bake/live/film/panel_curve.h"
+#include "sunbeam/detail/panel_curve.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "bake/optics/compiler.h"
 #include "sunbeam/core/vec.h"
+#include "sunbeam/detail/vector_clones.h"
 
 namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 template <std::size_t kCount>
@@ -101,4 +102,5 @@ void PanelCurve::fit(double low, double high, const Functions& functions, const 
   coefficients_.insert(coefficients_.end(), powers.begin(), powers.end());
 }
 
+}  // namespace v1
 }  // namespace sunbeam

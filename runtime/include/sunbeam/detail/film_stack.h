@@ -22,6 +22,7 @@
 #include "sunbeam/detail/wavelengths.h"
 
 namespace sunbeam {
+inline namespace v1 {
 
 struct FilmStack {
   double exterior_ior;              // n0 > 0
@@ -88,4 +89,5 @@ class StackSpectrum {
   std::vector<std::pair<double, double>> factors_;  // on all thicknesses, and their weights
 };
 
+}  // namespace v1
 }  // namespace sunbeam

@@ -15,12 +15,13 @@
 #include <span>
 #include <vector>
 
-#include "bake/live/film/microsurface.h"
-#include "bake/live/film/panel_curve.h"
-#include "bake/optics/layered/layered_film.h"
+#include "sunbeam/detail/layered_film.h"
+#include "sunbeam/detail/panel_curve.h"
+#include "sunbeam/detail/side.h"
 #include "sunbeam/detail/wavelengths.h"
 
 namespace sunbeam {
+inline namespace v1 {
 
 // Holds powers by wavelength, for light of one direction.
 struct FilmPowers {
@@ -36,7 +37,7 @@ class FilmCurves {
 
   // Writes the powers at the wavelengths of these numbers, for light that travels on `side` of the film at
   // this cosine, 0 to 1, with the normal.
-  void at(walk::Side side, double cosine, std::span<const int> wavelengths, FilmPowers& powers) const;
+  void at(Side side, double cosine, std::span<const int> wavelengths, FilmPowers& powers) const;
 
   // Does the same for directions side by side, which lie inside where `is_inside` is 1 and outside where it
   // is 0. The powers of the i-th wavelength at direction k go to [i * cosine.size() + k].
@@ -45,11 +46,11 @@ class FilmCurves {
 
   // Returns the cosines on this side, from 0 to 1, between which the powers are as good as polynomials: of
   // the cosine, or of its refraction.
-  std::vector<double> edges(walk::Side side) const;
+  std::vector<double> edges(Side side) const;
 
  private:
   void reflect_totally(double cosine, std::span<const int> wavelengths, FilmPowers& powers) const;
-  bool is_in_rarer(walk::Side side) const;
+  bool is_in_rarer(Side side) const;
   bool is_base_rarer() const { return base_ior_ < exterior_ior_; }
   double denser_ior() const { return is_base_rarer() ? exterior_ior_ : base_ior_; }
   double rarer_ior() const { return is_base_rarer() ? base_ior_ : exterior_ior_; }
@@ -62,4 +63,5 @@ class FilmCurves {
   PanelCurve total_;    // R of total reflection by the cosine over critical_; no panels if R = 1
 };
 
+}  // namespace v1
 }  // namespace sunbeam

@@ -1,10 +1,11 @@
-#include "bake/live/film/film_curves.h"
+#include "sunbeam/detail/film_curves.h"
 
 #include <algorithm>
 
-#include "bake/live/film/visible_normals.h"
+#include "sunbeam/detail/refraction.h"
 
 namespace sunbeam {
+inline namespace v1 {
 namespace {
 
 // The narrowest panels resolve a resonance of 1e-5 in the cosine, and the square root where a dispersive base
@@ -48,12 +49,12 @@ FilmCurves::FilmCurves(const Material& material, const Wavelengths& wavelengths)
 }
 
 // In "straight" mode light is below as it is outside.
-bool FilmCurves::is_in_rarer(walk::Side side) const {
-  const bool is_below = side == walk::Side::inside && !straight_;
+bool FilmCurves::is_in_rarer(Side side) const {
+  const bool is_below = side == Side::inside && !straight_;
   return critical_ == 0 || is_below == is_base_rarer();
 }
 
-std::vector<double> FilmCurves::edges(walk::Side side) const {
+std::vector<double> FilmCurves::edges(Side side) const {
   std::vector<double> cosines{0};
   const bool is_rarer = is_in_rarer(side);
   for (std::size_t p = 0; p < total_.panels() && !is_rarer; ++p) cosines.push_back(critical_ * total_.end(p));
@@ -77,8 +78,7 @@ void FilmCurves::reflect_totally(double cosine, std::span<const int> wavelengths
   std::copy_n(powers.reflectance.begin(), count, powers.reverse.begin());
 }
 
-void FilmCurves::at(walk::Side side, double cosine, std::span<const int> wavelengths,
-                    FilmPowers& powers) const {
+void FilmCurves::at(Side side, double cosine, std::span<const int> wavelengths, FilmPowers& powers) const {
   double coordinate = cosine;
   if (!is_in_rarer(side)) {
     const double squared = refracted_cosine_squared(denser_ior(), rarer_ior(), cosine);
@@ -86,7 +86,7 @@ void FilmCurves::at(walk::Side side, double cosine, std::span<const int> wavelen
     coordinate = std::sqrt(squared);
   }
   const PanelCurve::Place place = passing_.find(coordinate);
-  const std::size_t own = side == walk::Side::inside ? 2 * count_ : 0;
+  const std::size_t own = side == Side::inside ? 2 * count_ : 0;
   for (std::size_t i = 0; i < wavelengths.size(); ++i) {
     const std::size_t k = static_cast<std::size_t>(wavelengths[i]);
     powers.reflectance[i] = passing_.value(place, own + k);
@@ -99,7 +99,7 @@ void FilmCurves::at(const double* is_inside, std::span<const double> cosine, std
                     double* reflectance, double* transmittance) const {
   for (std::size_t k = 0; k < cosine.size(); ++k) {
     FilmPowers powers;
-    at(is_inside[k] == 1 ? walk::Side::inside : walk::Side::outside, cosine[k], wavelengths, powers);
+    at(is_inside[k] == 1 ? Side::inside : Side::outside, cosine[k], wavelengths, powers);
     for (std::size_t i = 0; i < wavelengths.size(); ++i) {
       reflectance[i * cosine.size() + k] = powers.reflectance[i];
       transmittance[i * cosine.size() + k] = powers.transmittance[i];
@@ -107,4 +107,5 @@ void FilmCurves::at(const double* is_inside, std::span<const double> cosine, std
   }
 }
 
+}  // namespace v1
 }  // namespace sunbeam

@@ -41,7 +41,6 @@ class BakeCommand {
         form_(progress_form(options.progress)),
         recipe_(load_recipe(options.recipe, options.overrides)) {
     require_separate({options.recipe}, {options.output});
-    require_bakeable(recipe_);
     require_wide_lobes(recipe_);
     if (options.preview) recipe_ = preview_of(recipe_);
     for (const Encoding encoding : encodings_of(recipe_)) require_reasonable_size(recipe_, encoding);

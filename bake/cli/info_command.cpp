@@ -111,7 +111,7 @@ Json describe(const Recipe& recipe) {
   Json json;
   json["recipe_hash"] = recipe.hash;
   for (const auto& [key, value] : recipe.spectrum.attributes()) json[key] = value;
-  if (!recipe.live_key.empty()) describe_layers(recipe, json);
+  if (is_layered(recipe)) describe_layers(recipe, json);
   json["eval"] = describe(automatic_for_eval(recipe.material));
   json["render"] = describe(automatic_for_render(recipe.material));
   return json;

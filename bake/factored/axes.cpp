@@ -4,6 +4,7 @@
 
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/factor_frame.h"
+#include "sunbeam/detail/layered_film.h"
 #include "sunbeam/detail/table_ranges.h"
 
 namespace sunbeam {
@@ -16,6 +17,9 @@ constexpr std::size_t kLeastFringeNodes = 6;
 constexpr std::size_t kAlbedoNodes = 3;           // where wavelengths differ; the series in kd converges fast
 constexpr std::size_t kDepthNodesOfOneValue = 5;  // where only wavelengths make depths differ
 constexpr std::size_t kLeastDepthNodesOfDecay = 12;  // where `arrival` holds what the pigment absorbs
+constexpr std::size_t kFacetShares = 33, kReturnShares = 65;
+constexpr double kAngleNodesPerRoughness = 1.5;  // lobes of facets change over an angle of the roughness
+constexpr std::size_t kLeastAngleNodes = 32, kMostAngleNodes = 160;
 constexpr double kMostCells = 1 << 28;
 
 Axis cubic(Axis axis) {
@@ -107,10 +111,48 @@ ArrayShape exchange_shape(const Recipe& recipe, const Wavelengths& w) {
   return shape_of(recipe, "exchange", joined(with_wi, direction_axes(recipe, "_o")), recipe.table.precision);
 }
 
+Axis facet_shares(std::size_t count) { return cubic({"facet_share", "1", spaced_nodes(0, 1, count, 2), 2}); }
+
+// (theta, phi) of facet_cosine and crossing.
+std::vector<Axis> angle_axes(const Recipe& recipe) {
+  const Roughness& roughness = recipe.material.roughness;
+  const double nodes = kPi / 2 / std::min(roughness.u, roughness.v) * kAngleNodesPerRoughness;
+  const auto count = std::clamp(static_cast<std::size_t>(nodes), kLeastAngleNodes, kMostAngleNodes);
+  return {cubic({"theta", "rad", spaced_nodes(0, std::acos(kLowestArrayCosine), count)}),
+          direction_axes(recipe, "")[1]};
+}
+
+// The base of an opaque one's table is not met: one cell stands for what it would return.
+void add_returning_shapes(const Recipe& recipe, FactorShapes& factors) {
+  Axis shares = facet_shares(kReturnShares), depths = depths_axis(recipe, factors.wavelengths);
+  if (recipe.material.is_opaque()) {
+    shares.nodes = {1};
+    depths.nodes = {0};
+  }
+  factors.return_cosine = shape_of(recipe, "return_cosine", {shares}, Precision::single_float);
+  factors.returning = shape_of(recipe, "returning", {cubic(depths), cubic(shares)}, Precision::single_float);
+}
+
+void add_layered_shapes(const Recipe& recipe, FactorShapes& factors) {
+  const Material& material = recipe.material;
+  if (!material.is_smooth() && !material.is_opaque()) {
+    const auto angles = angle_axes(recipe);
+    const std::vector<Axis> shares{facet_shares(kFacetShares)};
+    factors.facet_cosine = shape_of(recipe, "facet_cosine", joined(angles, shares), Precision::single_float);
+    const std::vector<Axis> media{cubic(recipe.grid[1]), arrival_depths_axis(recipe, factors.wavelengths)};
+    factors.crossing =
+        shape_of(recipe, "crossing", joined(media, joined(angles, shares)), Precision::single_float);
+  }
+  if (material.absorption_path == AbsorptionPath::sum || material.is_opaque())
+    add_returning_shapes(recipe, factors);
+  else
+    factors.exchange = exchange_shape(recipe, factors.wavelengths);
+}
+
 }  // namespace
 
 bool has_factored_depths(const Recipe& recipe) {
-  return recipe.material.absorption_path == AbsorptionPath::sum ||
+  return recipe.material.absorption_path == AbsorptionPath::sum || recipe.material.is_opaque() ||
          depths_axis(recipe, recipe.spectrum.wavelengths(recipe.material)).high() <= kDeepestProduct;
 }
 
@@ -129,6 +171,10 @@ FactorShapes factor_shapes(const Recipe& recipe) {
   factors.grid = recipe.grid;
   factors.wavelengths = recipe.spectrum.wavelengths(recipe.material);
   const Wavelengths& w = factors.wavelengths;
+  if (is_layered(recipe.material, w)) {
+    add_layered_shapes(recipe, factors);
+    return factors;
+  }
   if (!recipe.material.is_smooth()) factors.arrival = arrival_shape(recipe, w);
   if (recipe.material.absorption_path == AbsorptionPath::sum)
     factors.returned = returned_shape(recipe, w);

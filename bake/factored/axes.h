@@ -12,6 +12,7 @@ struct FactorShapes {
   std::vector<Axis> grid;
   Wavelengths wavelengths;
   ArrayShape arrival, returned, exchange;
+  ArrayShape facet_cosine{}, crossing{}, return_cosine{}, returning{};  // of a layered film
 };
 
 // Says whether the recipe's optical depths are within what a factored table holds.

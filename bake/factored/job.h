@@ -1,4 +1,5 @@
-// This job makes the values of the factored encoding (sunbeam/detail/factors.h) by random walks. It walks the
+// These jobs make the values of the factored encoding (sunbeam/detail/factors.h). That of a single clear film
+// takes random walks. It walks the
 // legs of legs.h, each weighted with the film's powers at all fringe orders and the pigment's at all optical
 // depths. The random numbers are the same at every base IOR, so that noise does not ripple along a slider.
 //
@@ -14,5 +15,9 @@ namespace sunbeam {
 // Makes the job, which `recipe` must outlive. The table's `noise` is the relative standard error of A A, root
 // mean square over all cells.
 std::unique_ptr<BakeJob> factored_job(const Recipe& recipe, std::uint64_t seed);
+
+// Makes the same of a layered film. What facets do is by quadrature over their rings (facets/crossing.h,
+// facets/returning.h), and only `exchange` is walked.
+std::unique_ptr<BakeJob> layered_job(const Recipe& recipe, std::uint64_t seed);
 
 }  // namespace sunbeam

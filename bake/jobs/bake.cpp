@@ -30,7 +30,12 @@ double bytes_of(const ArrayShape& array) {
 double bytes_of(const Recipe& recipe, Encoding encoding) {
   if (encoding == Encoding::factored) {
     const FactorShapes factors = factor_shapes(recipe);
-    return bytes_of(factors.arrival) + bytes_of(factors.returned) + bytes_of(factors.exchange);
+    double bytes = 0;
+    for (const ArrayShape* array :
+         {&factors.arrival, &factors.returned, &factors.exchange, &factors.facet_cosine, &factors.crossing,
+          &factors.return_cosine, &factors.returning})
+      bytes += bytes_of(*array);
+    return bytes;
   }
   const double value = recipe.table.precision == Precision::half_float ? 2 : 4;
   const double films = recipe.material.is_smooth() ? 1 : 2;
@@ -65,8 +70,8 @@ void require_reasonable_size(const Recipe& recipe, Encoding encoding) {
 }
 
 std::unique_ptr<BakeJob> make_job(const Recipe& recipe, Encoding encoding, std::uint64_t seed) {
-  require_bakeable(recipe);
-  if (encoding == Encoding::factored) return factored_job(recipe, seed);
+  if (encoding == Encoding::factored)
+    return is_layered(recipe) ? layered_job(recipe, seed) : factored_job(recipe, seed);
   return is_solved(recipe) ? solved_job(recipe, seed) : walked_job(recipe, seed);
 }
 

@@ -111,14 +111,6 @@ const char* thickness_key(const ConfigTable& config) {
   return config.has(kFilm) && !config.has(kThickness) ? kFilm : kThickness;
 }
 
-std::string live_key(const ConfigTable& config, const Material& material, const FilmDesign& film) {
-  if (config.has(kFilm)) return kFilm;
-  if (!film.layers.empty()) return is_number_or_absent(config, kFilmIor) ? kFilmExtinction : kFilmIor;
-  if (film.base) return kBaseIor;
-  if (material.is_opaque()) return kBaseExtinction;
-  return material.thickness_spread > 0 ? "thickness_spread" : "";
-}
-
 void require_proportions(const ConfigTable& config, const FilmDesign& film, double thickness_nm) {
   if (film.reaches(thickness_nm)) return;
   config.fail(kThickness,

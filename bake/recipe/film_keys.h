@@ -2,8 +2,6 @@
 // bottom, and a base that is clear or absorbs.
 #pragma once
 
-#include <string>
-
 #include "bake/optics/dispersion/film_design.h"
 #include "runtime/config/config.h"
 #include "sunbeam/material.h"
@@ -19,10 +17,6 @@ FilmDesign read_film_and_base(const ConfigTable& config, Material& material);
 
 // Returns the key that says how thick the film is.
 const char* thickness_key(const ConfigTable& config);
-
-// Returns the key of a film or base that no table holds yet: layers, an index that depends on the wavelength
-// or absorbs, or spread; empty if there is none.
-std::string live_key(const ConfigTable& config, const Material& material, const FilmDesign& film);
 
 // Throws Error if the film is `thickness_nm` > 0 thick without a layer that could be.
 void require_proportions(const ConfigTable& config, const FilmDesign& film, double thickness_nm);

@@ -63,7 +63,6 @@ MaterialKeys read_material(const ConfigTable& config) {
     refuse_below(config, m);
   else
     read_below(config, m);
-  keys.live_key = live_key(config, m, keys.film);
   if (const auto defect = m.defect()) config.fail(defect->key, defect->text);
   return keys;
 }

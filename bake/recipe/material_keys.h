@@ -13,7 +13,6 @@ namespace sunbeam {
 struct MaterialKeys {
   Material material;
   FilmDesign film;
-  std::string live_key;  // what no table holds yet; empty if tables hold it all
 };
 
 // Below an opaque base nothing is seen: keys of what lies there are refused, and albedo and absorption are 0.

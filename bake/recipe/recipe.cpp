@@ -290,7 +290,6 @@ Recipe read_recipe(const ConfigTable& config, const std::string& name, RemovedKe
   const ConfigTable material = config.table("material"), grid = config.table("grid");
   const MaterialKeys keys = read_material(material);
   recipe.material = keys.material;
-  recipe.live_key = keys.live_key;
   recipe.grid = read_grid(grid, keys.material, keys.film);
   recipe.spectrum = read_spectrum(config.table("spectrum"), material, grid, recipe, keys.film);
   read_albedo(material, recipe.spectrum, recipe.material);
@@ -305,15 +304,6 @@ Recipe read_recipe(const ConfigTable& config, const std::string& name, RemovedKe
 }
 
 }  // namespace
-
-void require_bakeable(const Recipe& recipe) {
-  if (recipe.live_key.empty()) return;
-  throw Error(fmt::format(
-      "{}: key 'material.{}': tables of layered films are not baked yet; allowed: one clear film "
-      "of a constant index, without spread, on a clear base of a constant index; sunbeam eval and "
-      "sunbeam render --material live take the recipe",
-      recipe.name, recipe.live_key));
-}
 
 Material at_lowest_base_ior(const Recipe& recipe) {
   Material material = recipe.material;
@@ -331,9 +321,7 @@ Recipe parse_recipe(const std::string& text, const std::string& name,
 }
 
 Recipe parse_stored_recipe(const std::string& text, const std::string& name) {
-  Recipe recipe = read_recipe(ConfigTable::parse(text, name), name, RemovedKeys::passed_over);
-  require_bakeable(recipe);
-  return recipe;
+  return read_recipe(ConfigTable::parse(text, name), name, RemovedKeys::passed_over);
 }
 
 Recipe load_recipe(const std::string& path, const std::vector<std::string>& overrides) {

@@ -49,8 +49,6 @@ struct Recipe {
 
   Spectrum spectrum;  // [spectrum], with albedo and absorption_spectrum of [material]
 
-  std::string live_key;  // of [material], which no table holds yet; empty if the recipe can be baked
-
   std::string name;  // file name, for messages
   std::string text;  // canonical TOML with overrides applied
   std::string hash;  // of `text`
@@ -60,8 +58,8 @@ inline Symmetry symmetry_of(const Recipe& recipe) {
   return recipe.material.roughness.is_isotropic() ? Symmetry::isotropic : Symmetry::anisotropic;
 }
 
-// Throws Error naming the key if no table can hold the recipe's film and base yet.
-void require_bakeable(const Recipe& recipe);
+// Says whether film and base are more than one clear layer of constant index on a clear base.
+inline bool is_layered(const Recipe& recipe) { return recipe.spectrum.film().is_layered(recipe.material); }
 
 // Says whether some base IOR of the recipe lies below the exterior's.
 bool reaches_below(const Recipe& recipe);

@@ -43,11 +43,11 @@ FLOORS = {
         ("bake/base",), ("bake/optics/dispersion",), ("bake/optics",), ("bake/optics/layered",),
         ("bake/live/film",), ("bake/live/walks", "bake/live/exact"), ("bake/live/general",), ("bake/live/adding_doubling",),
         ("bake/live",),
-        ("bake/recipe",), ("bake/blocks",), ("bake/factored", "bake/dense"), ("bake/check",), ("bake/jobs",),
+        ("bake/recipe",), ("bake/blocks",), ("bake/factored/facets",), ("bake/factored", "bake/dense"), ("bake/check",), ("bake/jobs",),
         ("bake/scene", "bake/compare", "bake/report"), ("bake/cli",)),
     "runtime/src": (
         ("runtime/src/base",), ("runtime/src/files",), ("runtime/src/exr", "runtime/src/film", "runtime/src/vdb"),
-        ("runtime/src/table",), ("runtime/src/sampling",), ("runtime/src/rest",), ("runtime/src/fit",), ("runtime/src/lookup",)),
+        ("runtime/src/table",), ("runtime/src/sampling",), ("runtime/src/rest",), ("runtime/src/layers",), ("runtime/src/fit",), ("runtime/src/lookup",)),
 }
 LARGEST_ROOM = 16  # files
 MAY_BE_LARGER = {"bake/cli", "bake/report"}  # a file a subcommand, a file a chart

@@ -77,30 +77,26 @@ std::vector<FacetRings::Node> FacetRings::mirroring(const Power& power) const {
   }
   angles.push_back((kPi / 2 + tilt_) / 2);
   return nodes(
-      angles,
-      [&](double angle) {
-        return Arc{cosine_of_psi(angle, w_.z / (2 * std::cos(angle))), 1};
-      },
-      power);
+      angles, [&](double angle) { return mirroring_arc(angle); }, power);
 }
 
 // A facet is seen from below the macro horizon too, h.z > 0. If light bends away from the normal, it grazes
 // the base at h.z = ratio w.z / (ratio c - c2).
+FacetRings::Arc FacetRings::crossing_arc(double angle) const {
+  Arc arc = visible_arc(angle);
+  if (film_.ratio <= 1) return arc;
+  const double below = 1 - square(film_.ratio * std::sin(angle));
+  const double bending = film_.ratio * std::cos(angle) - std::sqrt(std::max(0.0, below));
+  arc.high = std::min(1.0, cosine_of_psi(angle, film_.ratio * w_.z / bending));
+  return arc;
+}
+
 std::vector<FacetRings::Node> FacetRings::crossing(const Power& power) const {
   const double ratio = film_.ratio, rise = kPi / 2 - tilt_;
   const double end = std::acos(film_.critical);
   const double rim = ratio > 1 ? std::atan2(std::sin(rise), ratio - std::cos(rise)) : 0;
   return nodes(
-      {0, rim, rise, angle_of_ridge(kPi / 2), end},
-      [&](double angle) {
-        Arc arc{cosine_of_psi(angle, 0), 1};
-        if (ratio <= 1) return arc;
-        const double cosine = std::cos(angle), below = 1 - square(ratio * std::sin(angle));
-        const double bending = ratio * cosine - std::sqrt(std::max(0.0, below));
-        arc.high = std::min(1.0, cosine_of_psi(angle, ratio * w_.z / bending));
-        return arc;
-      },
-      power);
+      {0, rim, rise, angle_of_ridge(kPi / 2), end}, [&](double angle) { return crossing_arc(angle); }, power);
 }
 
 // The last of `angles` ends the rings; the others divide panels with flat ends (smooth_step.h).
@@ -119,7 +115,7 @@ std::vector<FacetRings::Node> FacetRings::nodes(std::vector<double> angles, ArcO
       const std::vector<Rgb> power_moments = moments(panel, power);
       for (int j = 0; j < rules_.panel.size(); ++j) {
         const double t = lerp(rules_.panel.rule().node[j], panel.from, panel.to), x = panel.at(t);
-        const double dangle = width_ * std::cosh(x) * width * smooth_step_slope(t);
+        const double dangle = angle_slope(x) * width * smooth_step_slope(t);
         add_ring(angle_at(x), dangle, arc_of(angle_at(x)), power_moments[j], nodes);
       }
     }

@@ -53,6 +53,18 @@ class FacetRings {
   std::vector<Node> mirroring(const Power& power) const;
   std::vector<Node> crossing(const Power& power) const;
 
+  // Return the normals of the ring at this angle from w, in rad: those visible from w, and of these the ones
+  // that mirror it above the horizon or let it pass to below. Int D_vis f sin(angle) dpsi is the sum of
+  // weight * f(normal).
+  std::vector<Node> visible_ring(double angle) const { return nodes_of(angle, visible_arc(angle)); }
+  std::vector<Node> mirroring_ring(double angle) const { return nodes_of(angle, mirroring_arc(angle)); }
+  std::vector<Node> crossing_ring(double angle) const { return nodes_of(angle, crossing_arc(angle)); }
+
+  // Angles go by a coordinate over which D_vis is about as wide at any direction and roughness.
+  double coordinate(double angle) const { return std::asinh((angle - tilt_) / width_); }
+  double angle_at(double x) const { return tilt_ + width_ * std::sinh(x); }
+  double angle_slope(double x) const { return width_ * std::cosh(x); }
+
  private:
   // Holds the cosines of psi between which a ring counts.
   struct Arc {
@@ -63,6 +75,15 @@ class FacetRings {
     double low, width, from, to;
     double at(double t) const;
   };
+
+  Arc visible_arc(double angle) const { return {cosine_of_psi(angle, 0), 1}; }
+  Arc mirroring_arc(double angle) const { return {cosine_of_psi(angle, w_.z / (2 * std::cos(angle))), 1}; }
+  Arc crossing_arc(double angle) const;
+  std::vector<Node> nodes_of(double angle, const Arc& arc) const {
+    std::vector<Node> nodes;
+    add_ring(angle, 1, arc, Rgb(1), nodes);
+    return nodes;
+  }
 
   template <class ArcOf>
   std::vector<Node> nodes(std::vector<double> angles, ArcOf arc_of, const Power& power) const;
@@ -80,8 +101,6 @@ class FacetRings {
   void add_part(double angle, double weight, const Peak& peak, double low, double high, const Rgb& power,
                 const GaussRule& rule, std::vector<Node>& nodes) const;
   Vec3 normal(double angle, double psi) const;
-  double coordinate(double angle) const { return std::asinh((angle - tilt_) / width_); }
-  double angle_at(double x) const { return tilt_ + width_ * std::sinh(x); }
   double angle_of_ridge(double tilt) const;
   double cosine_of_psi(double angle, double normal_z) const;
 

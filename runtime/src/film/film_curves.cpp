@@ -8,10 +8,6 @@ namespace sunbeam {
 inline namespace v1 {
 namespace {
 
-// The narrowest panels resolve a resonance of 1e-5 in the cosine, and the square root where a dispersive base
-// begins to reflect totally.
-constexpr PanelCurve::Accuracy kAccuracy{1e-9, 1e-12, 1e-7};
-
 bool absorbs(const Wavelengths& wavelengths) {
   return std::ranges::any_of(wavelengths.layers, [](const std::vector<FilmLayer>& layers) {
     return std::ranges::any_of(layers, [](const FilmLayer& layer) { return layer.index.imag() > 0; });
@@ -20,7 +16,8 @@ bool absorbs(const Wavelengths& wavelengths) {
 
 }  // namespace
 
-FilmCurves::FilmCurves(const Material& material, const Wavelengths& wavelengths)
+FilmCurves::FilmCurves(const Material& material, const Wavelengths& wavelengths,
+                       const PanelCurve::Accuracy& accuracy)
     : exterior_ior_(material.exterior_ior),
       base_ior_(bending_base_ior(material)),
       straight_(material.transmission == Transmission::straight),
@@ -38,14 +35,14 @@ FilmCurves::FilmCurves(const Material& material, const Wavelengths& wavelengths)
       values[2 * count_ + k] = below[k];
     }
   };
-  passing_ = PanelCurve(3 * count_, tabulate, kAccuracy);
+  passing_ = PanelCurve(3 * count_, tabulate, accuracy);
   if (critical_ == 0 || !absorbs(wavelengths)) return;
   const auto tabulate_total = [&](double x, std::span<double> values) {
     film.powers(denser_ior(), x * critical_, above.data(), through.data(), below.data());
     // A dispersive base may pass some light that has no direction here.
     for (std::size_t k = 0; k < count_; ++k) values[k] = is_base_rarer() ? above[k] + through[k] : below[k];
   };
-  total_ = PanelCurve(count_, tabulate_total, kAccuracy);
+  total_ = PanelCurve(count_, tabulate_total, accuracy);
 }
 
 // In "straight" mode light is below as it is outside.

@@ -18,6 +18,7 @@ double cosine_at(std::size_t k) { return (static_cast<double>(k / 4) + kNode[k %
 BoundWaves::BoundWaves(const Table& table, const Material& material, const FilmKernels& kernels)
     : film_(table.factors.wavelengths, material.exterior_ior, material.film_ior, kernels),
       field_(table, material) {
+  if (is_layered(material, table.factors.wavelengths)) layered_.emplace(table, material);
   const bool is_sum = table.factors.exchange.empty();
   for (std::size_t k = 0; k < field_.size(); ++k)
     gain_.push_back(field_.gain(k, is_sum ? returned(table.factors, k) : 0));
@@ -31,6 +32,7 @@ double BoundWaves::fringe_order_of(std::size_t k, double cosine) const {
 }
 
 double BoundWaves::returned(const Factors& factors, std::size_t k) const {
+  if (layered_) return layered_->returned(k, field_.material().optical_depth());
   return factors.returned
       .interpolate(std::array{field_.material().base_ior, field_.depth(k), fringe_order_of(k, 1)})
       .r;
@@ -74,7 +76,19 @@ BoundWaves::Direction BoundWaves::direction(double cosine, double phi) const {
   const FactorFrame& frame = field_.frame();
   Direction w;
   w.below = frame.one_visit_cosine(cosine);
-  const double per_cosine = 1 / frame.pigment_cosine(cosine), coordinate = frame.coordinate(cosine);
+  const double coordinate = frame.coordinate(cosine);
+  if (layered_)
+    layered_->arriving(layered_->passage(cosine, phi), material.optical_depth(), w.share);
+  else
+    take_shares(cosine, phi, coordinate, w);
+  if (!exchange_.empty()) w.taps = direction_taps(axes_[0], axes_[1], coordinate, phi);
+  return w;
+}
+
+void BoundWaves::take_shares(double cosine, double phi, double coordinate, Direction& w) const {
+  const Material& material = field_.material();
+  const FactorFrame& frame = field_.frame();
+  const double per_cosine = 1 / frame.pigment_cosine(cosine);
   std::array<float, kMostWavelengths> passing;
   if (material.is_smooth())
     film_.powers(material.film_thickness_nm, material.base_ior, static_cast<float>(cosine), passing.data());
@@ -88,8 +102,19 @@ BoundWaves::Direction BoundWaves::direction(double cosine, double phi) const {
           frame.share(arrival.interpolate(std::array{fringe_order_of(k, cosine), coordinate, phi}).r, decay);
     }
   }
-  if (!exchange_.empty()) w.taps = direction_taps(axes_[0], axes_[1], coordinate, phi);
-  return w;
+}
+
+std::vector<FloatRgb> BoundWaves::reflectance(std::span<const float> cosines) const {
+  std::vector<FloatRgb> folded(cosines.size());
+  if (!layered_) {
+    film_.fold(material().film_thickness_nm, material().base_ior, cosines, folded.data());
+    return folded;
+  }
+  for (std::size_t i = 0; i < cosines.size(); ++i) {
+    const Rgb rgb = layered_->reflectance(double{cosines[i]});
+    folded[i] = {static_cast<float>(rgb.r), static_cast<float>(rgb.g), static_cast<float>(rgb.b)};
+  }
+  return folded;
 }
 
 BoundWaves::Row BoundWaves::row(const Direction& i) const {

@@ -2,11 +2,13 @@
 // in doubles.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "runtime/src/film/film_spectrum.h"
 #include "runtime/src/fit/wave_field.h"
+#include "runtime/src/layers/layered_waves.h"
 
 namespace sunbeam {
 inline namespace v1 {
@@ -37,17 +39,20 @@ class BoundWaves {
   // Returns the rest, folded, 1/sr.
   Rgb rest(const Row& i, const Direction& o) const;
 
+  // Returns what the film reflects at cosines outside, folded.
+  std::vector<FloatRgb> reflectance(std::span<const float> cosines) const;
+
   // Returns A folded: what of a direction's light reaches the base.
   Rgb arriving(const Direction& w) const {
     return field_.wavelengths().fold(std::span(w.share).first(field_.size()));
   }
 
   const Material& material() const { return field_.material(); }
-  const FilmSpectrum& film() const { return film_; }
 
  private:
   double fringe_order_of(std::size_t k, double cosine) const;
   double returned(const Factors& factors, std::size_t k) const;
+  void take_shares(double cosine, double phi, double coordinate, Direction& w) const;
   void take_exchange(const Factors& factors);
   void cut_gains(bool is_sum);
   double visits(const Row& i, const Direction& o, std::size_t k) const;
@@ -55,6 +60,7 @@ class BoundWaves {
 
   FilmSpectrum film_;
   WaveField field_;
+  std::optional<LayeredWaves> layered_;  // of a layered film, else film_ serves
   std::vector<double> gain_;
   std::vector<Axis> axes_;                    // (cos_theta, phi) of exchange
   std::vector<std::vector<float>> exchange_;  // of each wavelength, (direction, direction)

@@ -7,7 +7,7 @@ WaveField::WaveField(const Table& table, const Material& material)
     : factors_(table.factors), material_(material), frame_(material, reaches_below(table)) {
   for (const double absorption : wavelengths().absorption)
     depths_.push_back(material.optical_depth() * absorption);
-  if (material.is_smooth()) return;
+  if (factors_.arrival.empty()) return;
   const bool has_depths = factors_.arrival.axes()[1].size() > 1;
   for (std::size_t k = 0; k < size(); ++k) {
     const bool is_new = k == 0 || (has_depths && depths_[k] != depths_[k - 1]);

@@ -1,6 +1,5 @@
 #include "runtime/src/lookup/bound_values.h"
 
-#include "runtime/src/film/film_spectrum.h"
 #include "runtime/src/fit/bound_fit.h"
 #include "sunbeam/detail/ggx.h"
 #include "sunbeam/detail/text.h"
@@ -14,11 +13,10 @@ constexpr int kRestAzimuths = 8;  // of an anisotropic factored table, in a quad
 
 double even_cosine(int node) { return static_cast<double>(node) / (BoundValues::kFilmCosines - 1); }
 
-std::vector<Color4> folded_film(const FilmSpectrum& film, const Material& material) {
+std::vector<Color4> folded_film(const BoundWaves& waves) {
   std::vector<float> cosines;
   for (int k = 0; k < BoundValues::kFilmCosines; ++k) cosines.push_back(static_cast<float>(even_cosine(k)));
-  std::vector<FloatRgb> folded(cosines.size());
-  film.fold(material.film_thickness_nm, material.base_ior, cosines, folded.data());
+  const std::vector<FloatRgb> folded = waves.reflectance(cosines);
   std::vector<Color4> nodes(folded.size() + 1);
   for (std::size_t k = 0; k < folded.size(); ++k) nodes[k] = Color4{folded[k].r, folded[k].g, folded[k].b, 0};
   return nodes;
@@ -42,7 +40,7 @@ BoundValues::BoundValues(const Table& table, const Material& material_at, Arithm
     return;
   }
   const BoundWaves waves(table, material, film_kernels(arithmetic));
-  film = folded_film(waves.film(), material);
+  film = folded_film(waves);
   if (symmetry == Symmetry::isotropic)
     separable = fit_isotropic(waves);
   else

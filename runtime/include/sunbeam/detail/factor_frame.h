@@ -28,9 +28,10 @@ inline namespace v1 {
 // Returns the least cosine of directions in arrays.
 inline constexpr double kLowestArrayCosine = 1e-3;
 
-// Says whether a grid's base IORs, which run upwards from this one, reach below the exterior's.
+// Says whether a grid's base IORs, which run upwards from this one, reach below the exterior's, so that light
+// is reflected totally. Nothing passes into an opaque base at all.
 inline bool reaches_below_exterior(const Material& material, double lowest_base_ior) {
-  return lowest_base_ior < material.exterior_ior;
+  return !material.is_opaque() && lowest_base_ior < material.exterior_ior;
 }
 
 // Returns c*.

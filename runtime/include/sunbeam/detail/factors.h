@@ -57,10 +57,11 @@ struct Factors {
                      //                  cos_theta_o, phi_o); layered: with wavelength_nm after albedo
 
   // Only layered films have these, rough ones the first two, path "sum" the last two.
-  NdArray facet_cosine;  // (theta, phi, facet_share)
-  NdArray crossing;  // (base_ior, optical_depth, theta, phi, facet_share); one optical depth as in `arrival`
-  NdArray return_cosine;  // (facet_share)
-  NdArray returning;      // (optical_depth, facet_share)
+  NdArray facet_cosine{};  // (theta, phi, facet_share)
+  NdArray
+      crossing{};  // (base_ior, optical_depth, theta, phi, facet_share); one optical depth as in `arrival`
+  NdArray return_cosine{};  // (facet_share)
+  NdArray returning{};      // (optical_depth, facet_share)
 
   bool empty() const { return returned.empty() && exchange.empty() && returning.empty(); }
   bool operator==(const Factors&) const = default;

@@ -7,8 +7,8 @@
 // Directions are those of Material: below the film light travels by base_ior, also where the base's index
 // depends on the wavelength, and in "straight" mode as outside.
 //
-// Values are right to 1e-10. R + T = 1 holds to rounding where nothing absorbs. Const members are safe to
-// share.
+// Values of live models are right to 1e-10. R + T = 1 holds to rounding where nothing absorbs. Const members
+// are safe to share.
 #pragma once
 
 #include <array>
@@ -33,7 +33,13 @@ struct FilmPowers {
 
 class FilmCurves {
  public:
-  FilmCurves(const Material& material, const Wavelengths& wavelengths);
+  // What the panels are held to: live models evaluate them as if they were exact, tables interpolate what
+  // comes of them. The narrowest panels of live models resolve a resonance of 1e-5 in the cosine, and the
+  // square root where a dispersive base begins to reflect totally.
+  static constexpr PanelCurve::Accuracy kLive{1e-9, 1e-12, 1e-7}, kTable{1e-5, 1e-6, 1e-4};
+
+  FilmCurves(const Material& material, const Wavelengths& wavelengths,
+             const PanelCurve::Accuracy& accuracy = kLive);
 
   // Writes the powers at the wavelengths of these numbers, for light that travels on `side` of the film at
   // this cosine, 0 to 1, with the normal.

@@ -17,7 +17,8 @@ constexpr std::size_t kLeastFringeNodes = 6;
 constexpr std::size_t kAlbedoNodes = 3;           // where wavelengths differ; the series in kd converges fast
 constexpr std::size_t kDepthNodesOfOneValue = 5;  // where only wavelengths make depths differ
 constexpr std::size_t kLeastDepthNodesOfDecay = 12;  // where `arrival` holds what the pigment absorbs
-constexpr std::size_t kFacetShares = 33, kReturnShares = 65;
+constexpr std::size_t kFacetRanks = 33, kReturnRanks = 65;
+constexpr std::size_t kLeastDepthNodesOfReturning = 16;  // it decays with the depth
 constexpr double kAngleNodesPerRoughness = 1.5;  // lobes of facets change over an angle of the roughness
 constexpr std::size_t kLeastAngleNodes = 32, kMostAngleNodes = 160;
 constexpr double kMostCells = 1 << 28;
@@ -111,7 +112,7 @@ ArrayShape exchange_shape(const Recipe& recipe, const Wavelengths& w) {
   return shape_of(recipe, "exchange", joined(with_wi, direction_axes(recipe, "_o")), recipe.table.precision);
 }
 
-Axis facet_shares(std::size_t count) { return cubic({"facet_share", "1", spaced_nodes(0, 1, count, 2), 2}); }
+Axis facet_ranks(std::size_t count) { return cubic({"facet_rank", "1", spaced_nodes(0, 1, count)}); }
 
 // (theta, phi) of facet_cosine and crossing.
 std::vector<Axis> angle_axes(const Recipe& recipe) {
@@ -124,24 +125,25 @@ std::vector<Axis> angle_axes(const Recipe& recipe) {
 
 // The base of an opaque one's table is not met: one cell stands for what it would return.
 void add_returning_shapes(const Recipe& recipe, FactorShapes& factors) {
-  Axis shares = facet_shares(kReturnShares), depths = depths_axis(recipe, factors.wavelengths);
+  Axis ranks = facet_ranks(kReturnRanks),
+       depths = depths_axis(recipe, factors.wavelengths, kLeastDepthNodesOfReturning);
   if (recipe.material.is_opaque()) {
-    shares.nodes = {1};
+    ranks.nodes = {1};
     depths.nodes = {0};
   }
-  factors.return_cosine = shape_of(recipe, "return_cosine", {shares}, Precision::single_float);
-  factors.returning = shape_of(recipe, "returning", {cubic(depths), cubic(shares)}, Precision::single_float);
+  factors.return_cosine = shape_of(recipe, "return_cosine", {ranks}, Precision::single_float);
+  factors.returning = shape_of(recipe, "returning", {cubic(depths), cubic(ranks)}, Precision::single_float);
 }
 
 void add_layered_shapes(const Recipe& recipe, FactorShapes& factors) {
   const Material& material = recipe.material;
   if (!material.is_smooth() && !material.is_opaque()) {
     const auto angles = angle_axes(recipe);
-    const std::vector<Axis> shares{facet_shares(kFacetShares)};
-    factors.facet_cosine = shape_of(recipe, "facet_cosine", joined(angles, shares), Precision::single_float);
+    const std::vector<Axis> ranks{facet_ranks(kFacetRanks)};
+    factors.facet_cosine = shape_of(recipe, "facet_cosine", joined(angles, ranks), Precision::single_float);
     const std::vector<Axis> media{cubic(recipe.grid[1]), arrival_depths_axis(recipe, factors.wavelengths)};
     factors.crossing =
-        shape_of(recipe, "crossing", joined(media, joined(angles, shares)), Precision::single_float);
+        shape_of(recipe, "crossing", joined(media, joined(angles, ranks)), Precision::single_float);
   }
   if (material.absorption_path == AbsorptionPath::sum || material.is_opaque())
     add_returning_shapes(recipe, factors);

@@ -70,7 +70,7 @@ class LayeredJob : public BakeJob {
 
   std::size_t later_tasks() const { return exchange_ ? bake_.iors() * exchange_->parts() : 1; }
 
-  // c' at all shares, then the values of `crossing` at (base_ior, optical_depth, facet_share).
+  // c' at all ranks, then the values of `crossing` at (base_ior, optical_depth, facet_rank).
   Block crossing(const Vec3& w) const {
     const std::vector<Axis>& axes = bake_.shapes.crossing.axes();
     Block block;
@@ -111,20 +111,20 @@ class LayeredJob : public BakeJob {
   static void add_crossing(std::size_t direction, const std::string& bytes, Factors& factors) {
     NdArray& cosine = factors.facet_cosine;
     NdArray& crossing = factors.crossing;
-    const std::size_t shares = crossing.axes()[4].size(), media = crossing.cells() / crossing.stride(1);
-    const auto values = unpacked<double>(bytes, (1 + media) * shares);
-    for (std::size_t j = 0; j < shares; ++j) {
-      cosine.set(direction * shares + j, Rgb(values[j]));
+    const std::size_t ranks = crossing.axes()[4].size(), media = crossing.cells() / crossing.stride(1);
+    const auto values = unpacked<double>(bytes, (1 + media) * ranks);
+    for (std::size_t j = 0; j < ranks; ++j) {
+      cosine.set(direction * ranks + j, Rgb(values[j]));
       for (std::size_t m = 0; m < media; ++m)
-        crossing.set(m * crossing.stride(1) + direction * shares + j, Rgb(values[(1 + m) * shares + j]));
+        crossing.set(m * crossing.stride(1) + direction * ranks + j, Rgb(values[(1 + m) * ranks + j]));
     }
   }
 
   static void add_returning(const std::string& bytes, Factors& factors) {
-    const std::size_t shares = factors.return_cosine.cells(), cells = factors.returning.cells();
-    const auto values = unpacked<double>(bytes, shares + cells);
-    for (std::size_t j = 0; j < shares; ++j) factors.return_cosine.set(j, Rgb(values[j]));
-    for (std::size_t k = 0; k < cells; ++k) factors.returning.set(k, Rgb(values[shares + k]));
+    const std::size_t ranks = factors.return_cosine.cells(), cells = factors.returning.cells();
+    const auto values = unpacked<double>(bytes, ranks + cells);
+    for (std::size_t j = 0; j < ranks; ++j) factors.return_cosine.set(j, Rgb(values[j]));
+    for (std::size_t k = 0; k < cells; ++k) factors.returning.set(k, Rgb(values[ranks + k]));
   }
 
   SharedInputs bake_;

@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "sunbeam/detail/factors.h"
+
 namespace sunbeam {
 namespace {
 
-constexpr int kCells = 192;        // of the angle's coordinate
+constexpr int kCells = 128;        // of the angle's coordinate
 constexpr int kNodesOfARing = 32;  // half of it, or a peak of an anisotropic film's
 
 const FacetRings::Rules& rules() {
@@ -26,12 +28,10 @@ double hermite(double t, double f0, double f1, double s0, double s1) {
 ShareOfInterval::ShareOfInterval(double low, double high, int cells,
                                  const std::function<double(double x)>& density)
     : low_(low), step_((high - low) / cells), below_{0} {
-  const GaussRule rule = gauss_legendre(3);
   for (int k = 0; k <= cells; ++k) density_.push_back(density(low + k * step_));
-  for (int k = 0; k < cells; ++k) {
-    double sum = 0;
-    for (int i = 0; i < rule.size(); ++i) sum += rule.weight[i] * density(low + (k + rule.node[i]) * step_);
-    below_.push_back(below_.back() + sum * step_);
+  for (std::size_t k = 0; k + 1 < density_.size(); ++k) {
+    const double middle = density(low + (static_cast<double>(k) + 0.5) * step_);
+    below_.push_back(below_.back() + step_ / 6 * (density_[k] + 4 * middle + density_[k + 1]));
   }
   const double whole = below_.back();
   for (double& share : below_) share /= whole;
@@ -63,14 +63,14 @@ double VisibleFacets::density(double angle) const {
 }
 
 // The angle falls as the cosine grows, so shares count from its other end.
-std::vector<double> VisibleFacets::cosines(std::span<const double> shares) const {
+std::vector<double> VisibleFacets::cosines(std::span<const double> ranks) const {
   const double low = rings_.coordinate(0), high = rings_.coordinate(kPi / 2);
   const ShareOfInterval share_of(low, high, kCells, [&](double x) {
     return density(std::max(rings_.angle_at(x), 0.0)) * rings_.angle_slope(x);
   });
   std::vector<double> cosines;
-  for (const double share : shares)
-    cosines.push_back(std::clamp(std::cos(rings_.angle_at(share_of.above(share))), 0.0, 1.0));
+  for (const double rank : ranks)
+    cosines.push_back(std::clamp(std::cos(rings_.angle_at(share_of.above(share_of_rank(rank)))), 0.0, 1.0));
   return cosines;
 }
 

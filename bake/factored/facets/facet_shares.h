@@ -15,7 +15,8 @@ namespace sunbeam {
 // Turns a density over an interval into the share of it that lies on one side, and back.
 class ShareOfInterval {
  public:
-  // `density` >= 0 is integrated by `cells` cells from `low` to `high`, which must hold some of it.
+  // `density` >= 0 is integrated by Simpson's rule in `cells` cells from `low` to `high`, which must hold
+  // some of it.
   ShareOfInterval(double low, double high, int cells, const std::function<double(double x)>& density);
 
   // Returns the x from which up to `high` this share lies, 0 to 1.
@@ -38,8 +39,8 @@ class VisibleFacets {
   // Returns the density of the facets over the ring's angle in rad.
   double density(double angle) const;
 
-  // Returns c' at shares v: v of the facets make a lower cosine with w.
-  std::vector<double> cosines(std::span<const double> shares) const;
+  // Returns c' at ranks (sunbeam/detail/factors.h).
+  std::vector<double> cosines(std::span<const double> ranks) const;
 
  private:
   Vec3 w_;

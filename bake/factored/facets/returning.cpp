@@ -5,11 +5,12 @@
 
 #include "bake/factored/facets/facet_shares.h"
 #include "bake/live/film/geometry.h"
+#include "sunbeam/detail/factors.h"
 
 namespace sunbeam {
 namespace {
 
-constexpr int kCells = 256;   // of the angle between light and facet
+constexpr int kCells = 128;   // of the angle between light and facet
 constexpr int kAzimuths = 8;  // of light under an anisotropic film, in a quadrant
 constexpr double kLeastAngle = 1e-5;
 
@@ -37,9 +38,9 @@ struct Diffuse {
   std::vector<double> weights;
 };
 
-Returning smooth(std::span<const double> shares, std::span<const double> depths) {
+Returning smooth(std::span<const double> ranks, std::span<const double> depths) {
   Returning result;
-  for (const double share : shares) result.cosines.push_back(std::sqrt(share));
+  for (const double rank : ranks) result.cosines.push_back(std::sqrt(share_of_rank(rank)));
   for (const double depth : depths)
     for (const double cosine : result.cosines)
       result.values.push_back(depth > 0 ? std::exp(-2 * depth / std::max(cosine, 1e-6)) : 1);
@@ -59,23 +60,24 @@ void add_mirrored(const FilmGeometry& film, const VisibleFacets& facets, double 
 
 }  // namespace
 
-Returning returning_of(const Material& material, std::span<const double> shares,
+Returning returning_of(const Material& material, std::span<const double> ranks,
                        std::span<const double> depths) {
-  if (material.is_smooth()) return smooth(shares, depths);
+  if (material.is_smooth()) return smooth(ranks, depths);
   const Diffuse diffuse(material.roughness);
   const ShareOfInterval share_of(0, kPi / 2, kCells, [&](double angle) { return diffuse.density(angle); });
   const FilmGeometry film(material);
   Returning result;
-  result.values.resize(depths.size() * shares.size());
-  for (std::size_t j = 0; j < shares.size(); ++j) {
-    const double angle = std::clamp(share_of.above(shares[j]), kLeastAngle, kPi / 2 - kLeastAngle);
+  result.values.resize(depths.size() * ranks.size());
+  for (std::size_t j = 0; j < ranks.size(); ++j) {
+    const double angle =
+        std::clamp(share_of.above(share_of_rank(ranks[j])), kLeastAngle, kPi / 2 - kLeastAngle);
     result.cosines.push_back(std::cos(angle));
     std::vector<double> sums(depths.size());
     for (std::size_t k = 0; k < diffuse.weights.size(); ++k)
       add_mirrored(film, diffuse.directions[k], angle, diffuse.weights[k], depths, sums);
     const double met = diffuse.density(angle);
     for (std::size_t t = 0; t < depths.size(); ++t)
-      result.values[t * shares.size() + j] = std::min(sums[t] / met, 1.0);
+      result.values[t * ranks.size() + j] = std::min(sums[t] / met, 1.0);
   }
   return result;
 }

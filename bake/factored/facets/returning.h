@@ -11,11 +11,11 @@
 namespace sunbeam {
 
 struct Returning {
-  std::vector<double> cosines;  // of each share v: v of the facets are met at a lower cosine
-  std::vector<double> values;   // at (optical depth, share), 0 to 1
+  std::vector<double> cosines;  // of each rank (sunbeam/detail/factors.h)
+  std::vector<double> values;   // at (optical depth, rank), 0 to 1
 };
 
-Returning returning_of(const Material& material, std::span<const double> shares,
+Returning returning_of(const Material& material, std::span<const double> ranks,
                        std::span<const double> depths);
 
 }  // namespace sunbeam

@@ -16,15 +16,14 @@ bool absorbs(const Wavelengths& wavelengths) {
 
 }  // namespace
 
-FilmCurves::FilmCurves(const Material& material, const Wavelengths& wavelengths,
-                       const PanelCurve::Accuracy& accuracy)
+FilmCurves::FilmCurves(const Material& material, const Wavelengths& wavelengths, const Precision& precision)
     : exterior_ior_(material.exterior_ior),
       base_ior_(bending_base_ior(material)),
       straight_(material.transmission == Transmission::straight),
       opaque_(material.is_opaque()),
       count_(wavelengths.size()),
       critical_(critical_cosine(denser_ior(), rarer_ior())) {
-  const StackSpectrum film = stack_spectrum(material, wavelengths);
+  const StackSpectrum film = stack_spectrum(material, wavelengths, precision.spread_orders);
   std::array<double, kMostWavelengths> above, through, below;
   const auto tabulate = [&](double x, std::span<double> values) {
     film.powers(rarer_ior(), x, above.data(), through.data(), below.data());
@@ -35,14 +34,14 @@ FilmCurves::FilmCurves(const Material& material, const Wavelengths& wavelengths,
       values[2 * count_ + k] = below[k];
     }
   };
-  passing_ = PanelCurve(3 * count_, tabulate, accuracy);
+  passing_ = PanelCurve(3 * count_, tabulate, precision.panels);
   if (critical_ == 0 || !absorbs(wavelengths)) return;
   const auto tabulate_total = [&](double x, std::span<double> values) {
     film.powers(denser_ior(), x * critical_, above.data(), through.data(), below.data());
     // A dispersive base may pass some light that has no direction here.
     for (std::size_t k = 0; k < count_; ++k) values[k] = is_base_rarer() ? above[k] + through[k] : below[k];
   };
-  total_ = PanelCurve(count_, tabulate_total, accuracy);
+  total_ = PanelCurve(count_, tabulate_total, precision.panels);
 }
 
 // In "straight" mode light is below as it is outside.

@@ -236,14 +236,14 @@ SUNBEAM_INLINE Polarised polarised(const ComplexQuad& field, const ComplexQuad& 
   return {squared_norm(minus) / size, 4 * q * far / size};
 }
 
-// Gauss' rule of n nodes integrates up to 2 n radians; fringes of the fourth order are resolved.
-std::vector<std::pair<double, double>> thickness_factors(double spread, double waves) {
+// Gauss' rule of n nodes integrates up to 2 n radians; fringes of so many orders are resolved.
+std::vector<std::pair<double, double>> thickness_factors(double spread, double waves, double orders) {
   constexpr double kCut = 3, kMostWaves = 100;
   if (waves > kMostWaves)
     throw Error("key 'thickness_spread': found " + to_text(spread) + " of a film whose path 2 sum(n d) is " +
                 to_text(waves) + " wavelengths; allowed: up to " + to_text(kMostWaves) + " wavelengths");
   const double radians = 2 * kPi * waves * 2 * kCut * spread;
-  const GaussRule rule = gauss_legendre(48 + static_cast<int>(2 * radians));
+  const GaussRule rule = gauss_legendre(static_cast<int>(orders * (12 + radians / 2)));
   std::vector<std::pair<double, double>> factors;
   double sum = 0;
   for (int i = 0; i < rule.size(); ++i) {
@@ -302,7 +302,7 @@ void write_sides(const LayerMatrix* layers, std::size_t count, int periods, cons
 }  // namespace
 
 StackSpectrum::StackSpectrum(const std::vector<FilmStack>& stacks, const std::vector<double>& wavelengths_nm,
-                             double spread)
+                             double spread, double spread_orders)
     : count_(stacks.size()),
       exterior_ior_(stacks.front().exterior_ior),
       periods_(stacks.front().periods),
@@ -329,7 +329,7 @@ StackSpectrum::StackSpectrum(const std::vector<FilmStack>& stacks, const std::ve
     }
     lanes_.push_back(std::move(lanes));
   }
-  if (spread > 0) factors_ = thickness_factors(spread, most_waves);
+  if (spread > 0) factors_ = thickness_factors(spread, most_waves, spread_orders);
 }
 
 void StackSpectrum::add_powers(const Lanes& lanes, double ior_from, double cosine, double* above,

@@ -33,10 +33,10 @@ double path_per_thickness(const Material& material, const Wavelengths& wavelengt
   return thickness > 0 ? path / thickness : 0;
 }
 
-StackSpectrum stack_spectrum(const Material& material, const Wavelengths& wavelengths) {
+StackSpectrum stack_spectrum(const Material& material, const Wavelengths& wavelengths, double spread_orders) {
   std::vector<FilmStack> stacks;
   for (std::size_t k = 0; k < wavelengths.size(); ++k) stacks.push_back(film_stack(material, wavelengths, k));
-  return {stacks, wavelengths.nm, material.thickness_spread};
+  return {stacks, wavelengths.nm, material.thickness_spread, spread_orders};
 }
 
 }  // namespace v1

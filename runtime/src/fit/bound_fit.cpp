@@ -11,6 +11,7 @@ constexpr double kLeastShare = 0.3;    // of the channels' mean: a folded colour
 constexpr double kLeastScale = 1e-18;  // and a pigment let nothing through; its square is a float yet
 
 constexpr double kMostRatio = 1e30;  // a float yet, times two scales
+constexpr double kMostRatioError = 0.002;
 
 // Directions at cosines that are even, or whose roots are, and at even azimuths of a quadrant.
 struct Grid {
@@ -59,13 +60,52 @@ void find_ratios(const BoundWaves& waves, const Grid& grid, std::vector<Color4>&
   }
 }
 
+double magnitude(const Rgb& color) {
+  return mean(transform(color, [](double x) { return std::abs(x); }));
+}
+
+// Of the rest between nodes of Q: the largest relative error that a direction has in the mean over others. A
+// layered film may be so colourful that a channel's wavelengths reach the base along quite different
+// directions.
+double ratio_error(const BoundWaves& waves, const Separable& fit) {
+  constexpr int kStep = 3;  // every third interval serves
+  std::vector<BoundWaves::Direction> between;
+  std::vector<EvenPosition> at;
+  std::vector<float> cosines;
+  for (int k = 0; k + 1 < fit.ratio_roots; k += kStep) {
+    const double root = (k + 0.5) / (fit.ratio_roots - 1);
+    cosines.push_back(static_cast<float>(entering_cosine(waves.material(), root * root)));
+    between.push_back(waves.direction(double{cosines.back()}, 0));
+    at.emplace_back(std::sqrt(cosines.back()), fit.ratio_roots);
+  }
+  double worst = 0;
+  for (std::size_t i = 0; i < between.size(); ++i) {
+    const auto row = waves.row(between[i]);
+    double wrong = 0, whole = 0;
+    for (std::size_t o = 0; o < between.size(); ++o) {
+      const Rgb rest = waves.rest(row, between[o]);
+      const Rgb found =
+          to_rgb(fit.ratio(at[i], at[o])) * scale_of(waves, between[i]) * scale_of(waves, between[o]);
+      wrong += std::sqrt(cosines[o]) * cosines[o] * magnitude(found - rest);
+      whole += std::sqrt(cosines[o]) * cosines[o] * magnitude(rest);
+    }
+    if (whole > 0) worst = std::max(worst, wrong / whole);
+  }
+  return worst;
+}
+
 }  // namespace
 
 Separable fit_isotropic(const BoundWaves& waves) {
-  Separable fit;
-  find_scales(waves, {Separable::kScaleCosines, 1, false}, fit.scales);
-  find_ratios(waves, {Separable::kRatioRoots, 1, true, true}, fit.ratios);
-  return fit;
+  for (int roots = Separable::kRatioRoots;; roots = 2 * roots - 1) {
+    Separable fit(roots);
+    find_ratios(waves, {roots, 1, true, true}, fit.ratios);
+    if (waves.has_layers() && 2 * roots - 1 <= Separable::kMostRatioRoots &&
+        ratio_error(waves, fit) > kMostRatioError)
+      continue;
+    find_scales(waves, {Separable::kScaleCosines, 1, false}, fit.scales);
+    return fit;
+  }
 }
 
 AnisotropicSeparable fit_anisotropic(const BoundWaves& waves) {

@@ -48,6 +48,7 @@ class BoundWaves {
   }
 
   const Material& material() const { return field_.material(); }
+  bool has_layers() const { return layered_.has_value(); }
 
  private:
   double fringe_order_of(std::size_t k, double cosine) const;

@@ -42,29 +42,29 @@ double interpolated(std::span<const double> row, const Stencil& at) {
   return sum;
 }
 
-// Returns the root of the share at which cosines that grow along the axis pass `cosine`.
-double root_of_share(const Axis& axis, std::span<const double> cosines, double cosine) {
+// Returns the rank at which cosines that grow along the axis pass `cosine`.
+double rank_of(const Axis& axis, std::span<const double> cosines, double cosine) {
   constexpr int kBisections = 40;
   double low = 0, high = 1;
   for (int i = 0; i < kBisections; ++i) {
-    const double t = (low + high) / 2;
-    (interpolated(cosines, axis.stencil(t * t)) < cosine ? low : high) = t;
+    const double rank = (low + high) / 2;
+    (interpolated(cosines, axis.stencil(rank)) < cosine ? low : high) = rank;
   }
   return (low + high) / 2;
 }
 
 }  // namespace
 
-// Nodes over the share v = t^2, with dv in their weight.
+// Nodes over the rank, with dv in their weight.
 struct LayeredWaves::Nodes {
-  std::vector<double> share, weight;
+  std::vector<double> rank, weight;
 
-  // From the root t0 to t1, dense towards a knee at t0: powers behave like a root of the distance there.
-  void add(const GaussRule& rule, double t0, double t1) {
+  // From the rank u0 to u1, dense towards a knee at u0: powers behave like a root of the distance there.
+  void add(const GaussRule& rule, double u0, double u1) {
     for (int i = 0; i < rule.size(); ++i) {
-      const double s = rule.node[i], t = lerp(s * s, t0, t1);
-      share.push_back(t * t);
-      weight.push_back(rule.weight[i] * 2 * s * std::abs(t1 - t0) * 2 * t);
+      const double s = rule.node[i];
+      rank.push_back(lerp(s * s, u0, u1));
+      weight.push_back(rule.weight[i] * 2 * s * std::abs(u1 - u0) * share_slope(rank.back()));
     }
   }
 };
@@ -82,15 +82,15 @@ LayeredWaves::LayeredWaves(const Table& table, const Material& material)
   if (!table.factors.returning.empty()) take_returns();
 }
 
-// From (base_ior, optical_depth, theta, phi, facet_share) at this base IOR.
+// From (base_ior, optical_depth, theta, phi, facet_rank) at this base IOR.
 void LayeredWaves::take_crossing(const NdArray& crossing) {
   const NdArray slice = crossing.slice(std::array{material_.base_ior});
-  const std::size_t depths = slice.axes()[0].size(), shares = slice.axes()[3].size();
+  const std::size_t depths = slice.axes()[0].size(), ranks = slice.axes()[3].size();
   const std::size_t directions = slice.axes()[1].size() * slice.axes()[2].size();
   for (std::size_t w = 0; w < directions; ++w)
     for (std::size_t t = 0; t < depths; ++t)
-      for (std::size_t j = 0; j < shares; ++j)
-        crossing_.push_back(double{slice.values()[t * slice.stride(0) + w * shares + j]});
+      for (std::size_t j = 0; j < ranks; ++j)
+        crossing_.push_back(double{slice.values()[t * slice.stride(0) + w * ranks + j]});
 }
 
 // What is reflected totally ends at a knee.
@@ -101,13 +101,13 @@ void LayeredWaves::take_returns() {
   const bool bends = material_.transmission == Transmission::refract;
   const double critical = bends ? critical_cosine(material_.base_ior, material_.exterior_ior)
                                 : critical_cosine(material_.exterior_ior, material_.base_ior);
-  const double knee = critical > 0 ? root_of_share(axis, cosines, critical) : 0;
+  const double knee = critical > 0 ? rank_of(axis, cosines, critical) : 0;
   Nodes nodes;
   nodes.add(rule_, knee, 1);
   if (knee > 0) nodes.add(rule_, knee, 0);
   FilmPowers powers;
-  for (const double share : nodes.share) {
-    return_place_.push_back(axis.stencil(share));
+  for (const double rank : nodes.rank) {
+    return_place_.push_back(axis.stencil(rank));
     const double cosine = std::clamp(interpolated(cosines, return_place_.back()), 0.0, 1.0);
     curves_.at(Side::inside, cosine, every_wavelength_, powers);
     reflectance_.insert(reflectance_.end(), powers.reflectance.begin(), powers.reflectance.begin() + size());
@@ -138,15 +138,15 @@ LayeredWaves::Passage LayeredWaves::passage(double cosine, double phi) const {
   }
   const NdArray& facets = table_.factors.facet_cosine;
   const std::vector<Axis>& axes = facets.axes();
-  const std::size_t shares = axes[2].size(), row = crossing_.size() / (facets.cells() / shares);
+  const std::size_t ranks = axes[2].size(), row = crossing_.size() / (facets.cells() / ranks);
   const Stencil theta = axes[0].stencil(std::acos(std::min(cosine, 1.0))), azimuth = axes[1].stencil(phi);
-  std::vector<double> cosines(shares), crossing(row);
+  std::vector<double> cosines(ranks), crossing(row);
   for (std::size_t a = 0; a < theta.count; ++a)
     for (std::size_t b = 0; b < azimuth.count; ++b) {
       const std::size_t direction = theta.node[a] * axes[1].size() + azimuth.node[b];
       const double weight = theta.weight[a] * azimuth.weight[b];
-      for (std::size_t j = 0; j < shares; ++j)
-        cosines[j] += weight * double{facets.values()[direction * shares + j]};
+      for (std::size_t j = 0; j < ranks; ++j)
+        cosines[j] += weight * double{facets.values()[direction * ranks + j]};
       for (std::size_t j = 0; j < row; ++j) crossing[j] += weight * crossing_[direction * row + j];
     }
   add_nodes(axes[2], cosines, crossing, w);
@@ -154,20 +154,20 @@ LayeredWaves::Passage LayeredWaves::passage(double cosine, double phi) const {
 }
 
 // The film lets nothing in below the critical angle's cosine.
-void LayeredWaves::add_nodes(const Axis& shares, std::span<const double> cosines,
+void LayeredWaves::add_nodes(const Axis& ranks, std::span<const double> cosines,
                              std::span<const double> crossing, Passage& w) const {
   const double critical = critical_cosine(material_.exterior_ior, material_.base_ior);
   Nodes nodes;
-  nodes.add(rule_, critical > 0 ? root_of_share(shares, cosines, critical) : 0, 1);
-  const std::size_t count = nodes.share.size(), depths = crossing.size() / shares.size();
+  nodes.add(rule_, critical > 0 ? rank_of(ranks, cosines, critical) : 0, 1);
+  const std::size_t count = nodes.rank.size(), depths = crossing.size() / ranks.size();
   w.weight = std::move(nodes.weight);
   w.transmittance.resize(count * size());
   w.crossing.resize(depths * count);
   for (std::size_t j = 0; j < count; ++j) {
-    const Stencil at = shares.stencil(nodes.share[j]);
+    const Stencil at = ranks.stencil(nodes.rank[j]);
     let_pass(std::clamp(interpolated(cosines, at), 0.0, 1.0), &w.transmittance[j * size()]);
     for (std::size_t t = 0; t < depths; ++t)
-      w.crossing[t * count + j] = interpolated(crossing.subspan(t * shares.size(), shares.size()), at);
+      w.crossing[t * count + j] = interpolated(crossing.subspan(t * ranks.size(), ranks.size()), at);
   }
 }
 

@@ -46,7 +46,7 @@ class LayeredWaves {
   void take_crossing(const NdArray& crossing);
   void take_returns();
   void let_pass(double cosine, double* transmittance) const;
-  void add_nodes(const Axis& shares, std::span<const double> cosines, std::span<const double> crossing,
+  void add_nodes(const Axis& ranks, std::span<const double> cosines, std::span<const double> crossing,
                  Passage& w) const;
 
   const Table& table_;
@@ -55,9 +55,9 @@ class LayeredWaves {
   FilmCurves curves_;
   GaussRule rule_;
   std::vector<int> every_wavelength_;
-  std::vector<double> crossing_;       // (theta, phi, optical_depth, facet_share)
+  std::vector<double> crossing_;       // (theta, phi, optical_depth, facet_rank)
   std::vector<double> reflectance_;    // from below: (node, wavelength)
-  std::vector<Stencil> return_place_;  // of the nodes on facet_share
+  std::vector<Stencil> return_place_;  // of the nodes on facet_rank
   std::vector<double> return_weight_;
 };
 

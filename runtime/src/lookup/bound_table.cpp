@@ -27,12 +27,13 @@ void BoundTable::fill_last_lanes(const std::vector<float>& first_chances) {
     const float cosine = static_cast<float>(k) / (kScales - 1);
     nodes.scales[k][3] = lerp(first_chances.data(), EvenPosition(std::sqrt(cosine), kRows));
   }
-  const auto at = [](int root, int count) {
-    return EvenPosition(static_cast<float>(root) / (kRatios - 1), count);
+  const int roots = ratio_roots();
+  const auto at = [roots](int root, int count) {
+    return EvenPosition(static_cast<float>(root) / static_cast<float>(roots - 1), count);
   };
-  for (int o = 0; o < kRatios; ++o)
-    for (int i = 0; i < kRatios; ++i)
-      nodes.ratios[static_cast<std::size_t>(o * kRatios + i)][3] =
+  for (int o = 0; o < roots; ++o)
+    for (int i = 0; i < roots; ++i)
+      nodes.ratios[static_cast<std::size_t>(o * roots + i)][3] =
           cosine_rows_.density(at(o, kRows), at(i, CosineRows::kNodes));
 }
 
@@ -53,15 +54,15 @@ Rgb BoundTable::albedo(const Vec3& wo) const {
 inline BoundTable::Viewer::Viewer(const BoundTable& table, const Vec3& wo)
     : scale(table.values_.separable.scale(EvenPosition(std::min(static_cast<float>(wo.z), 1.0f), kScales))),
       facets(table.facets_, wo),
-      ratios(std::min(facets.root, 1.0f), kRatios),
+      ratios(std::min(facets.root, 1.0f), table.ratio_roots()),
       rows(std::min(facets.root, 1.0f), kRows) {}
 
 // Where lights lie among nodes.
 struct BoundTable::Places {
   template <int kLights>
-  explicit Places(const FacetLights<kLights>& lights)
+  Places(const FacetLights<kLights>& lights, int ratio_roots)
       : scale(place(lights.cosine, kScales)),
-        ratio(place(lights.root, kRatios)),
+        ratio(place(lights.root, ratio_roots)),
         film(place(lights.half_cosine, BoundValues::kFilmCosines)) {}
 
   EvenPositions scale, ratio, film;
@@ -80,7 +81,7 @@ SUNBEAM_ALWAYS_INLINE std::array<BoundTable::Parts, kLights> BoundTable::parts(
     const Viewer& viewer, const Vec3& wo, const std::array<Vec3, kLights>& wi) const {
   constexpr float kPerSolidAngle = static_cast<float>(kInvPi / 4);  // d(root) / d(cosine) / (2 pi)
   const FacetLights<kLights> lights(facets_, viewer.facets, wo, wi.data());
-  const Places at(lights);
+  const Places at(lights, ratio_roots());
   const float chance = viewer.first_chance();
   const Color4 rest_pdf = (1 - chance) * kPerSolidAngle / lights.root,  // times the density over the root
       first_pdf = chance * viewer.facets.pdf_per_d * lights.d;
@@ -156,7 +157,7 @@ EvalAndSample BoundTable::eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& r
 SUNBEAM_ALWAYS_INLINE void BoundTable::eval_four(const Viewer& viewer, const Color4* ratios, const Vec3& wo,
                                                  const Vec3* wi, Rgb* f) const {
   const FacetLights<4> lights(facets_, viewer.facets, wo, wi);
-  const Places at(lights);
+  const Places at(lights, ratio_roots());
   SUNBEAM_UNROLL_4
   for (int k = 0; k < 4; ++k) {
     Color4 value = values_.separable.scale({at.scale, k}) * lerp(ratios, {at.ratio, k});
@@ -173,11 +174,12 @@ void BoundTable::eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f
     return;
   }
   const Viewer viewer(*this, wo);
-  std::array<Color4, kRatios + 1> ratios;
-  const Color4* row = values_.separable.ratios.data() + viewer.ratios.lower * kRatios;
-  for (int i = 0; i < kRatios; ++i)
-    ratios[i] = viewer.scale * (row[i] + viewer.ratios.upper_weight * (row[i + kRatios] - row[i]));
-  ratios[kRatios] = Color4{};
+  const int roots = ratio_roots();
+  std::array<Color4, Separable::kMostRatioRoots + 1> ratios;
+  const Color4* row = values_.separable.ratios.data() + viewer.ratios.lower * roots;
+  for (int i = 0; i < roots; ++i)
+    ratios[i] = viewer.scale * (row[i] + viewer.ratios.upper_weight * (row[i + roots] - row[i]));
+  ratios[roots] = Color4{};
 
   const std::size_t left = wi.size() % 4, last = wi.size() - left;
   for (std::size_t k = 0; k < last; k += 4) eval_four(viewer, ratios.data(), wo, &wi[k], &f[k]);

@@ -70,9 +70,11 @@ class BoundTable {
   void fill_last_lanes(const std::vector<float>& first_chances);
   bool has_cells() const { return facets_.u2 == facets_.v2; }
 
-  static constexpr int kScales = Separable::kScaleCosines, kRatios = Separable::kRatioRoots,
-                       kRows = FacetCells::kRows;
-  static_assert((kRatios - 1) % (kRows - 1) == 0 && (kRatios - 1) % (CosineRows::kNodes - 1) == 0,
+  int ratio_roots() const { return values_.separable.ratio_roots; }
+
+  static constexpr int kScales = Separable::kScaleCosines, kRows = FacetCells::kRows;
+  static constexpr int kIntervals = Separable::kRatioRoots - 1;
+  static_assert(kIntervals % (kRows - 1) == 0 && kIntervals % (CosineRows::kNodes - 1) == 0,
                 "what is linear between rows and nodes of sampling must be so between ratios");
 
   // The last lanes of S and Q, of every table, hold for a viewer there the chance of trying the first

@@ -16,7 +16,7 @@ float weight(const EvenPosition& at, int upper) { return upper ? at.upper_weight
 }  // namespace
 
 Color4 Separable::rest(float cos_o, float cos_i) const {
-  const EvenPosition root_o(std::sqrt(cos_o), kRatioRoots), root_i(std::sqrt(cos_i), kRatioRoots);
+  const EvenPosition root_o(std::sqrt(cos_o), ratio_roots), root_i(std::sqrt(cos_i), ratio_roots);
   return separable_rest(scale(EvenPosition(cos_o, kScaleCosines)), scale(EvenPosition(cos_i, kScaleCosines)),
                         ratio(root_o, root_i));
 }

@@ -28,19 +28,23 @@ inline Color4 separable_rest(const Color4& scale_o, const Color4& scale_i, const
 // Holds S and Q of an isotropic film. A place beyond the last node, of weight 0, may be read. The last lanes
 // are the owner's: BoundTable keeps there what its sampling looks up at the same places.
 struct Separable {
-  static constexpr int kScaleCosines = 513, kRatioRoots = 65;
+  static constexpr int kScaleCosines = 513, kRatioRoots = 65, kMostRatioRoots = 257;
+
+  explicit Separable(int roots = kRatioRoots)
+      : ratio_roots(roots), ratios(static_cast<std::size_t>((roots + 1) * roots + 1)) {}
 
   Color4 scale(const EvenPosition& cosine) const { return lerp(scales.data(), cosine); }
   Color4 ratio(const EvenPosition& root_o, const EvenPosition& root_i) const {
-    const Color4* row = ratios.data() + root_o.lower * kRatioRoots;
-    const Color4 low = lerp(row, root_i), high = lerp(row + kRatioRoots, root_i);
+    const Color4* row = ratios.data() + root_o.lower * ratio_roots;
+    const Color4 low = lerp(row, root_i), high = lerp(row + ratio_roots, root_i);
     return low + root_o.upper_weight * (high - low);
   }
   // Returns the rest, 1/sr, of two cosines in (0, 1].
   Color4 rest(float cos_o, float cos_i) const;
 
-  std::vector<Color4> scales = std::vector<Color4>(kScaleCosines + 1);                    // S
-  std::vector<Color4> ratios = std::vector<Color4>((kRatioRoots + 1) * kRatioRoots + 1);  // Q at (wo, wi)
+  int ratio_roots;                                                      // kRatioRoots doubled so often
+  std::vector<Color4> scales = std::vector<Color4>(kScaleCosines + 1);  // S
+  std::vector<Color4> ratios;                                           // Q at (wo, wi)
 };
 
 // Holds S and Q of an anisotropic film, at (c, phi) and (wo, wi).

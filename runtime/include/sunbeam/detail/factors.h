@@ -19,7 +19,9 @@
 //
 // A layered film (layered_film.h) is kept as it is, layer by layer, and its powers are evaluated when a table
 // is bound. Facets know of it only through the cosine c' that light makes with them, so its arrays say how
-// light is spread over c'. With v the share of the facets visible from w that w meets at a cosine below c',
+// light is spread over c'. Let v be the share of the facets visible from w that w meets at a cosine below c',
+// and u in [0, 1] their rank, v = u^3 / (u^3 + (1 - u)^3), which is dense at both ends, where c' changes
+// fast:
 //
 //   rough film:  A = exp(-tau/m~) Int_0^1 T(facet_cosine) exp(crossing) dv,
 //   path "sum":  returned = Int_0^1 R_below(return_cosine) returning dv,
@@ -48,7 +50,7 @@ inline namespace v1 {
 struct Factors {
   std::vector<Axis> grid;  // the parameters as the recipe spans them, in the order of kParameterNames
   Wavelengths
-      wavelengths;  // albedo of the base and relative absorption at each, their colours, and a layered film
+      wavelengths;  // albedo of the base and relative absorption at each, their colours, a layered film
 
   NdArray arrival;   // (base_ior, optical_depth, fringe_order, cos_theta, phi); empty for a smooth film;
                      // one optical depth where it does not matter (straight)
@@ -57,15 +59,24 @@ struct Factors {
                      //                  cos_theta_o, phi_o); layered: with wavelength_nm after albedo
 
   // Only layered films have these, rough ones the first two, path "sum" the last two.
-  NdArray facet_cosine{};  // (theta, phi, facet_share)
-  NdArray
-      crossing{};  // (base_ior, optical_depth, theta, phi, facet_share); one optical depth as in `arrival`
-  NdArray return_cosine{};  // (facet_share)
-  NdArray returning{};      // (optical_depth, facet_share)
+  NdArray facet_cosine{};   // (theta, phi, facet_rank)
+  NdArray crossing{};       // (base_ior, optical_depth, theta, phi, facet_rank), depths as of `arrival`
+  NdArray return_cosine{};  // (facet_rank)
+  NdArray returning{};      // (optical_depth, facet_rank)
 
   bool empty() const { return returned.empty() && exchange.empty() && returning.empty(); }
   bool operator==(const Factors&) const = default;
 };
+
+// Returns the share v of facets up to a rank in [0, 1], and the derivative of it by the rank.
+inline double share_of_rank(double rank) {
+  const double low = rank * rank * rank, high = (1 - rank) * (1 - rank) * (1 - rank);
+  return low / (low + high);
+}
+inline double share_slope(double rank) {
+  const double low = rank * rank * rank, high = (1 - rank) * (1 - rank) * (1 - rank);
+  return 3 * square(rank * (1 - rank) / (low + high));
+}
 
 // Returns the fringe order of a direction at this cosine outside, for the material's film at a thickness of
 // one nm and a wavelength of one nm.

@@ -33,13 +33,19 @@ struct FilmPowers {
 
 class FilmCurves {
  public:
-  // What the panels are held to: live models evaluate them as if they were exact, tables interpolate what
-  // comes of them. The narrowest panels of live models resolve a resonance of 1e-5 in the cosine, and the
-  // square root where a dispersive base begins to reflect totally.
-  static constexpr PanelCurve::Accuracy kLive{1e-9, 1e-12, 1e-7}, kTable{1e-5, 1e-6, 1e-4};
+  // Says how precise the powers are: the panels, and the orders of fringes that a mean over platelets
+  // resolves.
+  struct Precision {
+    PanelCurve::Accuracy panels;
+    double spread_orders;
+  };
+  // Live models take the powers as exact. Their narrowest panels resolve a resonance of 1e-5 in the cosine,
+  // and the square root where a dispersive base begins to reflect totally. Tables interpolate what comes of
+  // theirs.
+  static constexpr Precision kLive{{1e-9, 1e-12, 1e-7}, StackSpectrum::kAllOrders},
+      kTable{{1e-5, 1e-6, 1e-4}, 2};
 
-  FilmCurves(const Material& material, const Wavelengths& wavelengths,
-             const PanelCurve::Accuracy& accuracy = kLive);
+  FilmCurves(const Material& material, const Wavelengths& wavelengths, const Precision& precision = kLive);
 
   // Writes the powers at the wavelengths of these numbers, for light that travels on `side` of the film at
   // this cosine, 0 to 1, with the normal.

@@ -50,11 +50,14 @@ std::optional<double> reflectance_below(const FilmStack& stack, double cos_exter
 // One film at several wavelengths, or the mean over its platelets of uneven thickness.
 class StackSpectrum {
  public:
+  // The mean over a spread resolves fringes of so many orders; with four it is right to 1e-10.
+  static constexpr double kAllOrders = 4;
+
   // Takes a stack for each wavelength, equal in number of layers and periods. `spread` is the relative
   // standard deviation of one factor on all thicknesses, normal and cut at three deviations; at most 1 / 3.
   // With a spread it throws Error if the path 2 sum(n d) is longer than 100 wavelengths.
   StackSpectrum(const std::vector<FilmStack>& stacks, const std::vector<double>& wavelengths_nm,
-                double spread = 0);
+                double spread = 0, double spread_orders = kAllOrders);
 
   std::size_t wavelengths() const { return count_; }
   // Returns how many numbers powers() writes to each list: wavelengths(), filled up to a multiple of four.

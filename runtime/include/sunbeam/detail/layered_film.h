@@ -20,7 +20,8 @@ FilmStack film_stack(const Material& material, const Wavelengths& wavelengths, s
 double path_per_thickness(const Material& material, const Wavelengths& wavelengths, std::size_t k);
 
 // Returns the film's powers in closed form, for any film.
-StackSpectrum stack_spectrum(const Material& material, const Wavelengths& wavelengths);
+StackSpectrum stack_spectrum(const Material& material, const Wavelengths& wavelengths,
+                             double spread_orders = StackSpectrum::kAllOrders);
 
 }  // namespace v1
 }  // namespace sunbeam

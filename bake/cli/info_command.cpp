@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -38,6 +40,46 @@ Json describe(const std::vector<Axis>& axes) {
 
 const char* name_of(Precision precision) { return precision == Precision::half_float ? "half" : "float"; }
 
+constexpr double kReferenceNm = 510;
+
+// A film of layers and its base, with indices at the wavelength of this number.
+void describe_layers(const Material& material, const Wavelengths& waves, std::size_t k, Json& json) {
+  const FilmStack stack = film_stack(material, waves, k);
+  json["film"] = {{"thickness_nm", material.film_thickness_nm},
+                  {"thickness_spread", material.thickness_spread},
+                  {"periods", stack.periods},
+                  {"wavelength_nm", waves.nm[k]}};
+  for (const FilmLayer& layer : stack.layers)
+    json["film"]["layers"].push_back({{"thickness_nm", layer.thickness_nm},
+                                      {"ior", layer.index.real()},
+                                      {"extinction", layer.index.imag()}});
+  json["base"] = {{"ior", stack.base_index.real()},
+                  {"extinction", stack.base_index.imag()},
+                  {"opaque", material.is_opaque()}};
+}
+
+// The film that a factored table holds, at the wavelength next to that of a recipe.
+void describe_layers(const Table& table, Json& json) {
+  const Wavelengths& waves = table.factors.wavelengths;
+  if (!table.is_factored() || !is_layered(table.material, waves)) return;
+  const auto at =
+      std::ranges::min_element(waves.nm, {}, [](double nm) { return std::abs(nm - kReferenceNm); });
+  describe_layers(table.material, waves, static_cast<std::size_t>(at - waves.nm.begin()), json);
+}
+
+void print_layers(const Json& json) {
+  const Json &film = json["film"], &base = json["base"];
+  const double nm = film["wavelength_nm"].get<double>();
+  out("film            {:g} nm, thickness_spread {:g}, periods {} of {} layers\n",
+      film["thickness_nm"].get<double>(), film["thickness_spread"].get<double>(), film["periods"].get<int>(),
+      film["layers"].size());
+  for (const Json& layer : film["layers"])
+    out("layer           {:g} nm, n {:g}, k {:g} at {:g} nm\n", layer["thickness_nm"].get<double>(),
+        layer["ior"].get<double>(), layer["extinction"].get<double>(), nm);
+  out("base            n {:g}, k {:g} at {:g} nm, {}\n", base["ior"].get<double>(),
+      base["extinction"].get<double>(), nm, base["opaque"].get<bool>() ? "opaque" : "clear");
+}
+
 Json describe(const Table& table, const std::string& path) {
   Json json;
   json["schema_version"] = table.schema_version;
@@ -63,6 +105,7 @@ Json describe(const Table& table, const std::string& path) {
       json["wavelengths"].push_back(number_or_text(nm));
   }
   json["tool_version"] = table.info.at("tool_version");
+  describe_layers(table, json);
   json["error"] = Json::object();
   for (const auto& [key, value] : table.info)
     if (key.starts_with("error.")) json["error"][key.substr(6)] = number_or_text(value);
@@ -71,7 +114,9 @@ Json describe(const Table& table, const std::string& path) {
 
 void print_text(const Json& json, const Table& table) {
   for (const auto& [key, value] : json.items()) {
-    if (key == "axes" || key == "arrays" || key == "recipe" || key == "error") continue;
+    if (key == "film") print_layers(json);
+    if (value.is_structured() && key != "wavelengths") continue;
+    if (key == "recipe") continue;
     out("{:<16}{}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
   }
   for (const Axis& axis : axes_of(table))
@@ -91,43 +136,16 @@ Json describe(const EstimatorChoice& choice) {
   return {{"estimator", name_of(choice.estimator)}, {"reason", choice.reason}};
 }
 
-// A film of layers and its base, with indices at 510 nm.
-void describe_layers(const Recipe& recipe, Json& json) {
-  const Material& material = recipe.material;
-  const FilmStack stack = film_stack(material, recipe.spectrum.monochromatic(material, 510), 0);
-  json["film"] = {{"thickness_nm", material.film_thickness_nm},
-                  {"thickness_spread", material.thickness_spread},
-                  {"periods", stack.periods}};
-  for (const FilmLayer& layer : stack.layers)
-    json["film"]["layers"].push_back({{"thickness_nm", layer.thickness_nm},
-                                      {"ior", layer.index.real()},
-                                      {"extinction", layer.index.imag()}});
-  json["base"] = {{"ior", stack.base_index.real()},
-                  {"extinction", stack.base_index.imag()},
-                  {"opaque", material.is_opaque()}};
-}
-
 Json describe(const Recipe& recipe) {
   Json json;
   json["recipe_hash"] = recipe.hash;
   for (const auto& [key, value] : recipe.spectrum.attributes()) json[key] = value;
-  if (is_layered(recipe)) describe_layers(recipe, json);
+  const Material& material = recipe.material;
+  if (is_layered(recipe))
+    describe_layers(material, recipe.spectrum.monochromatic(material, kReferenceNm), 0, json);
   json["eval"] = describe(automatic_for_eval(recipe.material));
   json["render"] = describe(automatic_for_render(recipe.material));
   return json;
-}
-
-void print_layers(const Json& json) {
-  const Json& film = json["film"];
-  out("film            {:g} nm, thickness_spread {:g}, periods {} of {} layers\n",
-      film["thickness_nm"].get<double>(), film["thickness_spread"].get<double>(), film["periods"].get<int>(),
-      film["layers"].size());
-  for (const Json& layer : film["layers"])
-    out("layer           {:g} nm, n {:g}, k {:g} at 510 nm\n", layer["thickness_nm"].get<double>(),
-        layer["ior"].get<double>(), layer["extinction"].get<double>());
-  const Json& base = json["base"];
-  out("base            n {:g}, k {:g} at 510 nm, {}\n", base["ior"].get<double>(),
-      base["extinction"].get<double>(), base["opaque"].get<bool>() ? "opaque" : "clear");
 }
 
 void print_text(const Json& json) {

@@ -8,9 +8,6 @@
 
 namespace sunbeam {
 
-// At most so many layers may a film have, those of all periods counted.
-inline constexpr int kMostFilmLayers = 1000;
-
 // Sets the numbers of film and base in `material` and returns what they do not say. An index of the base that
 // depends on the wavelength leaves its values at 510 nm there. Throws Error naming the key.
 FilmDesign read_film_and_base(const ConfigTable& config, Material& material);

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <ranges>
-
 #include "bake/base/version.h"
 #include "bake/report/appearance.h"
 #include "bake/report/chart.h"
@@ -289,10 +287,11 @@ Markup energy_section(const ReportSource& source) {
               drawing(kAlbedoChartWidth, kAlbedoChartHeight, "Albedo over theta_i", albedo_chart(report))));
 }
 
-Markup material_rows(const Material& material) {
+Markup material_rows(const Table& table) {
   Markup rows;
-  for (const auto& key : material_keys() | std::views::filter(is_in_tables))
-    rows += format_markup("<tr><th>{}</th><td>{}</td></tr>\n", key, get_text(material, key));
+  for (const auto& key : material_keys())
+    if (is_in_tables(key, table.schema_version))
+      rows += format_markup("<tr><th>{}</th><td>{}</td></tr>\n", key, get_text(table.material, key));
   return rows;
 }
 
@@ -307,8 +306,7 @@ Markup provenance_section(const ReportSource& source) {
       format_markup("<pre id=\"command\">{}</pre>\n<details><summary>Material</summary>\n<div "
                     "class=\"wide\"><table class=\"keys\">\n<tbody>\n{}</tbody>\n</table></div></details>\n"
                     "<details><summary>Recipe {}</summary>\n<pre id=\"recipe\">{}</pre></details>",
-                    source.command, material_rows(source.table.material), source.recipe.hash,
-                    source.recipe.text));
+                    source.command, material_rows(source.table), source.recipe.hash, source.recipe.text));
 }
 
 }  // namespace

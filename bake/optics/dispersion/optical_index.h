@@ -1,8 +1,8 @@
 // This file holds the refractive index n + i k of a medium over wavelength: one number, Cauchy's formula, a
 // list of measured values, or a table of optical constants by its name.
 //
-// n lies in 0.05 to 10 and k in 0 to 100 at every visible wavelength, 380 to 780 nm: an index that leaves
-// these ranges is not made. Wavelengths are those in vacuum.
+// n lies in kLeastIor to kLargestIor and k in 0 to kMostExtinction at every visible wavelength, 380 to 780
+// nm: an index that leaves these ranges is not made. Wavelengths are those in vacuum.
 #pragma once
 
 #include <array>
@@ -12,10 +12,9 @@
 #include <vector>
 
 #include "bake/optics/dispersion/optical_tables.h"
+#include "sunbeam/detail/wavelengths.h"
 
 namespace sunbeam {
-
-inline constexpr double kLeastIor = 0.05, kLargestIor = 10, kMostExtinction = 100;
 
 // Values of a list must reach from the one wavelength to the other. What the eye sees beyond them is little,
 // and the values at the ends of a list stand for it.

@@ -84,8 +84,6 @@ inline constexpr double kMostScatteringDepth = 100;
 // These give access by key and text, for CSV columns, table metadata and messages. Lists are separated by
 // ';'.
 const std::vector<std::string>& material_keys();
-// Says whether table files hold the key. Where they do not, a table's material has the default.
-bool is_in_tables(std::string_view key);
 std::string get_text(const Material& material, std::string_view key);
 // Throws Error "key 'K': found V; allowed: ..." (without a file: the caller adds it). What a base_ior may be
 // depends on base_extinction: set the keys in the order of material_keys().
@@ -104,6 +102,8 @@ struct Interval {
   double low, high;
 };
 Interval allowed_interval(std::string_view key);
+// Returns that of this material: what a base_ior may be depends on base_extinction.
+Interval allowed_interval(std::string_view key, const Material& material);
 
 }  // namespace v1
 }  // namespace sunbeam

@@ -10,8 +10,8 @@
 //   rest  = s T(c_i) T(c_o) [ ballistic kd/pi exp(-tau path(m_i, m_o)) + decay remainder ]
 //   ballistic = exp(-tau_s (1/m_i + 1/m_o)),  decay = exp(-min(tau (1/m_i + 1/m_o), 12))
 //
-// R = `film_reflectance`, T = 1 - R for a smooth film and `film_transmittance` for a rough one, `remainder` =
-// the array of that name; path as in AbsorptionPath. The first term in brackets is one visit of the base
+// R = `film_reflectance`, T = `film_transmittance`, or 1 - R where there is no such array, `remainder` = the
+// array of that name; path as in AbsorptionPath. The first term in brackets is one visit of the base
 // through a smooth film, the remainder holds further visits, what the pigment scatters and what roughness
 // changes. The decay is that of the remainder; the cap keeps it within the range of a half float. All values
 // are per colour channel.
@@ -33,6 +33,7 @@
 #include <array>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sunbeam/core/color_space.h"
@@ -48,6 +49,10 @@ inline namespace v1 {
 
 // The versions of the files that are read; tables whose film is one clear layer are written in the second.
 inline constexpr int kTableSchemaVersion = 4, kSingleFilmSchemaVersion = 3, kOldestTableSchemaVersion = 2;
+
+// Says whether files of this version hold the key of a material. Where they do not, a table's material has
+// the default.
+bool is_in_tables(std::string_view key, int schema_version);
 
 // Says what the array `remainder` of a dense table stands in: see above.
 enum class FrameKind { closed, none };
@@ -70,7 +75,7 @@ struct Table {
   // Their axes are (film_thickness_nm, base_ior, cos_theta); they are finer than the grid, as fringes need
   // it.
   NdArray film_reflectance;
-  NdArray film_transmittance;  // empty for a smooth film, and without a frame
+  NdArray film_transmittance;  // empty for a smooth film of one clear layer, and without a frame
 
   // Only spectrum "full" with a frame has it, else it is empty. Over the axis optical_path it holds the base
   // under its pigment without the film, times pi, folded over the wavelengths: F(x) = fold(kd exp(-a x)), a =

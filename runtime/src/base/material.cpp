@@ -131,8 +131,6 @@ const std::vector<std::string>& material_keys() {
   return keys;
 }
 
-bool is_in_tables(std::string_view key) { return key != "thickness_spread" && key != "base_extinction"; }
-
 std::string_view to_string(Transmission transmission) {
   return transmission == Transmission::straight ? "straight" : "refract";
 }
@@ -157,6 +155,10 @@ std::string to_string(const Roughness& roughness) {
 Interval allowed_interval(std::string_view key) {
   if (key == "albedo" || key == "roughness") return {0, 1};
   return find_numeric(key)->allowed;
+}
+
+Interval allowed_interval(std::string_view key, const Material& material) {
+  return key == "base_ior" && material.is_opaque() ? kOpaqueBaseIor : allowed_interval(key);
 }
 
 std::string get_text(const Material& material, std::string_view key) {
@@ -184,9 +186,7 @@ void set_from_text(Material& material, std::string_view key, const std::string& 
   } else if (key == "roughness") {
     set_roughness(material, text);
   } else if (const NumericKey* numeric = find_numeric(key)) {
-    const bool is_of_metal = key == "base_ior" && material.is_opaque();
-    material.*(numeric->member) =
-        parse_list(key, text, 1, is_of_metal ? kOpaqueBaseIor : numeric->allowed).front();
+    material.*(numeric->member) = parse_list(key, text, 1, allowed_interval(key, material)).front();
   } else {
     throw Error("'" + std::string(key) + "' is not a material key");
   }

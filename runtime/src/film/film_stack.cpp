@@ -238,10 +238,10 @@ SUNBEAM_INLINE Polarised polarised(const ComplexQuad& field, const ComplexQuad& 
 
 // Gauss' rule of n nodes integrates up to 2 n radians; fringes of so many orders are resolved.
 std::vector<std::pair<double, double>> thickness_factors(double spread, double waves, double orders) {
-  constexpr double kCut = 3, kMostWaves = 100;
-  if (waves > kMostWaves)
+  constexpr double kCut = 3;
+  if (waves > kMostFilmWaves)
     throw Error("key 'thickness_spread': found " + to_text(spread) + " of a film whose path 2 sum(n d) is " +
-                to_text(waves) + " wavelengths; allowed: up to " + to_text(kMostWaves) + " wavelengths");
+                to_text(waves) + " wavelengths; allowed: up to " + to_text(kMostFilmWaves) + " wavelengths");
   const double radians = 2 * kPi * waves * 2 * kCut * spread;
   const GaussRule rule = gauss_legendre(static_cast<int>(orders * (12 + radians / 2)));
   std::vector<std::pair<double, double>> factors;

@@ -33,7 +33,8 @@ float round_to(Precision precision, double value) {
 ArrayShape::ArrayShape(std::string name, std::vector<Axis> axes, Precision precision, std::size_t channels)
     : name_(std::move(name)), axes_(std::move(axes)), precision_(precision), channels_(channels), cells_(1) {
   if (axes_.empty() || axes_.size() > kMaxRank)
-    throw Error("array '" + name_ + "': has " + std::to_string(axes_.size()) + " axes; allowed: 1 to 8");
+    throw Error("array '" + name_ + "': has " + std::to_string(axes_.size()) + " axes; allowed: 1 to " +
+                std::to_string(kMaxRank));
   for (std::size_t k = axes_.size(); k-- > 0;) {
     const Axis& axis = axes_[k];
     const std::string defect = axis.defect();

@@ -7,6 +7,10 @@
 namespace sunbeam {
 inline namespace v1 {
 
+bool is_in_tables(std::string_view key, int schema_version) {
+  return schema_version > kSingleFilmSchemaVersion || (key != "thickness_spread" && key != "base_extinction");
+}
+
 bool reaches_below(const Table& table) {
   return reaches_below_exterior(table.material, table.parameter_axis(1).low());
 }

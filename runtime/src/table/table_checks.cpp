@@ -10,6 +10,8 @@ namespace sunbeam {
 inline namespace v1 {
 namespace {
 
+constexpr double kDeepest = 1e21;  // optical depth
+
 NdArray* find(TableParts& parts, const std::string& name) {
   const auto at =
       std::find_if(parts.arrays.begin(), parts.arrays.end(), [&](const auto& a) { return a.name() == name; });
@@ -49,9 +51,29 @@ void check_plain_axis(const Axis& axis, double low, double high) {
   check_period(axis, 0);
 }
 
-void check_parameter(const Axis& axis, const char* name) {
-  const Interval allowed = allowed_interval(name);
+void check_parameter(const Table& table, const Axis& axis, const char* name) {
+  const Interval allowed = allowed_interval(name, table.material);
   check_plain_axis(axis, allowed.low, allowed.high);
+}
+
+// That of one direction in an array of factors.
+void check_azimuth(Symmetry symmetry, const Axis& phi) {
+  check_period(phi, 0);
+  if (symmetry == Symmetry::anisotropic) return check_ends(phi, 0, kPi / 2);
+  if (phi.size() != 1)
+    throw Error("axis '" + phi.name + "' has " + std::to_string(phi.size()) +
+                " nodes; an isotropic table has 1");
+}
+
+void check_shares(const Axis& facet_share) {
+  check_period(facet_share, 0);
+  check_ends(facet_share, 0, 1);
+}
+
+void check_same(const ArrayShape& array, const Axis& axis, const ArrayShape& other, const Axis& others) {
+  if (!(axis == others))
+    throw Error("array '" + array.name() + "': axis '" + axis.name + "' differs from that of '" +
+                other.name() + "'");
 }
 
 void check_azimuths(Symmetry symmetry, const Axis& phi_i, const Axis& phi_o) {
@@ -112,10 +134,10 @@ void check_symmetry(const Table& table) {
 }
 
 void check_ranges(const Table& table) {
-  for (std::size_t k = 0; k < 3; ++k) check_parameter(table.parameter_axis(k), kParameterNames[k]);
+  for (std::size_t k = 0; k < 3; ++k) check_parameter(table, table.parameter_axis(k), kParameterNames[k]);
   if (table.is_factored()) return;
   const auto &axes = table.remainder.axes(), &film = table.film_reflectance.axes();
-  for (const std::size_t k : {0u, 1u}) check_parameter(film[k], kParameterNames[k]);
+  for (const std::size_t k : {0u, 1u}) check_parameter(table, film[k], kParameterNames[k]);
   for (const std::size_t k : {3u, 5u}) check_period(axes[k], 0);
   check_period(film[2], 0);
   for (const std::size_t k : {3u, 5u}) check_axis_range(axes[k], 1e-6, 1);
@@ -128,9 +150,10 @@ void check_ranges(const Table& table) {
 
 void check_factor_axes(const Table& table, const NdArray& array, std::size_t first_cosine) {
   const auto& axes = array.axes();
-  check_parameter(axes[0], "base_ior");
-  check_plain_axis(axes[1], 0, 1e21);
+  check_parameter(table, axes[0], "base_ior");
+  check_plain_axis(axes[1], 0, kDeepest);
   for (const Axis& axis : axes) {
+    if (axis.name == "wavelength_nm") check_plain_axis(axis, 300, 1000);
     if (axis.name == "albedo") check_plain_axis(axis, 0, 1);
     if (axis.name == "fringe_order") check_plain_axis(axis, 0, 1e4);
   }
@@ -140,22 +163,35 @@ void check_factor_axes(const Table& table, const NdArray& array, std::size_t fir
     else
       check_axis_range(axes[k], 1e-6, 1);
     check_period(axes[k], 0);
-    check_period(axes[k + 1], 0);
-    if (table.symmetry == Symmetry::anisotropic) {
-      check_ends(axes[k + 1], 0, kPi / 2);
-    } else if (axes[k + 1].size() != 1) {
-      throw Error("axis '" + axes[k + 1].name + "' has " + std::to_string(axes[k + 1].size()) +
-                  " nodes; an isotropic table has 1");
-    }
+    check_azimuth(table.symmetry, axes[k + 1]);
   }
+}
+
+void check_crossing_axes(const Table& table, const NdArray& facet_cosine, const NdArray& crossing) {
+  const auto &facets = facet_cosine.axes(), &axes = crossing.axes();
+  check_plain_axis(facets[0], 0, kPi / 2);
+  check_azimuth(table.symmetry, facets[1]);
+  check_shares(facets[2]);
+  check_parameter(table, axes[0], "base_ior");
+  check_plain_axis(axes[1], 0, kDeepest);
+  for (std::size_t k = 0; k < facets.size(); ++k) check_same(crossing, axes[2 + k], facet_cosine, facets[k]);
+}
+
+// One cell stands for an opaque base, which is not met.
+void check_returning_axes(const Table& table, const NdArray& return_cosine, const NdArray& returning) {
+  const Axis& share = return_cosine.axes()[0];
+  if (!table.material.is_opaque()) check_shares(share);
+  check_plain_axis(share, 0, 1);
+  check_plain_axis(returning.axes()[0], 0, kDeepest);
+  check_same(returning, returning.axes()[1], return_cosine, share);
 }
 
 void check_first_visit_axis(const NdArray& first_visit) { check_plain_axis(first_visit.axes()[0], 0, 1000); }
 
 // Look-ups locate wi and wo on the same nodes.
-void check_same_ends(const NdArray& exchange) {
+void check_same_ends(const NdArray& exchange, std::size_t first_cosine) {
   const auto& axes = exchange.axes();
-  for (const std::size_t k : {4u, 5u}) {
+  for (const std::size_t k : {first_cosine, first_cosine + 1}) {
     Axis like_o = axes[k];
     like_o.name = axes[k + 2].name;
     if (!(like_o == axes[k + 2]))

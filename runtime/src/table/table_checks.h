@@ -25,10 +25,13 @@ void check_symmetry(const Table& table);
 void check_ranges(const Table& table);
 // Checks the axes of an array of factors; those from `first_cosine` on are pairs of a cosine and an azimuth.
 void check_factor_axes(const Table& table, const NdArray& array, std::size_t first_cosine);
+// Check the axes of arrays of a layered film; look-ups locate facets on the same nodes in both.
+void check_crossing_axes(const Table& table, const NdArray& facet_cosine, const NdArray& crossing);
+void check_returning_axes(const Table& table, const NdArray& return_cosine, const NdArray& returning);
 // Checks the range of the optical path.
 void check_first_visit_axis(const NdArray& first_visit);
-// Checks that look-ups may locate wi and wo on the same nodes.
-void check_same_ends(const NdArray& exchange);
+// Checks that look-ups may locate wi and wo, whose axes begin at `first_cosine`, on the same nodes.
+void check_same_ends(const NdArray& exchange, std::size_t first_cosine);
 
 }  // namespace v1
 }  // namespace sunbeam

@@ -1,13 +1,13 @@
 #include "runtime/src/table/table_parts.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "runtime/src/table/table_checks.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/factor_frame.h"
 #include "sunbeam/detail/hash.h"
+#include "sunbeam/detail/layered_film.h"
 #include "sunbeam/detail/table_ranges.h"
 #include "sunbeam/detail/text.h"
 
@@ -29,6 +29,18 @@ constexpr std::array<const char*, 5> kWarpedArrivalAxes = {"base_ior", "optical_
                                                            "warped_cos", "phi"};
 constexpr std::array<const char*, 8> kWarpedExchangeAxes = {
     "base_ior", "optical_depth", "albedo", "fringe_order", "warped_cos_i", "phi_i", "warped_cos_o", "phi_o"};
+// Of layered films.
+constexpr std::array<const char*, 3> kFacetCosineAxes = {"theta", "phi", "facet_share"};
+constexpr std::array<const char*, 5> kCrossingAxes = {"base_ior", "optical_depth", "theta", "phi",
+                                                      "facet_share"};
+constexpr std::array<const char*, 1> kReturnCosineAxes = {"facet_share"};
+constexpr std::array<const char*, 2> kReturningAxes = {"optical_depth", "facet_share"};
+constexpr std::array<const char*, 9> kLayeredExchangeAxes = {"base_ior",      "optical_depth", "albedo",
+                                                             "wavelength_nm", "fringe_order",  "cos_theta_i",
+                                                             "phi_i",         "cos_theta_o",   "phi_o"};
+constexpr std::array<const char*, 9> kWarpedLayeredExchangeAxes = {
+    "base_ior",     "optical_depth", "albedo",       "wavelength_nm", "fringe_order",
+    "warped_cos_i", "phi_i",         "warped_cos_o", "phi_o"};
 constexpr std::array<const char*, 8> kRequiredInfo = {"recipe",    "recipe_hash", "seed",         "samples",
                                                       "estimator", "spectrum",    "tool_version", "encoding"};
 
@@ -51,109 +63,26 @@ std::string content_hash_of(const Attributes& attributes, const std::vector<Arra
   return content_hash(digest);
 }
 
-const std::string& require(const Attributes& attributes, std::string_view key) {
-  const auto at = attributes.find(std::string(key));
-  if (at == attributes.end()) throw Error("attribute '" + std::string(key) + "' is missing");
-  return at->second;
-}
-
-// Calls visit(word) for what single spaces separate.
-template <class Visit>
-void for_each_word(std::string_view text, Visit visit) {
-  for (;;) {
-    const auto end = text.find(' ');
-    visit(text.substr(0, end));
-    if (end == std::string_view::npos) return;
-    text.remove_prefix(end + 1);
-  }
-}
-
-std::vector<double> parse_numbers(const Attributes& attributes, const std::string& key) {
-  std::vector<double> numbers;
-  for_each_word(require(attributes, key), [&](std::string_view text) {
-    double value = 0;
-    if (!parse_number(text, value) || !std::isfinite(value))
-      throw Error("attribute '" + key + "' holds '" + shortened(text) + "', which is no finite number");
-    numbers.push_back(value);
-  });
-  return numbers;
-}
-
-void require_in(const std::string& key, const std::vector<double>& values, const Interval& allowed) {
-  for (const double value : values)
-    if (!(value >= allowed.low && value <= allowed.high))
-      throw Error("attribute '" + key + "' holds " + to_text(value) + "; allowed: " + to_text(allowed.low) +
-                  " to " + to_text(allowed.high));
-}
-
-constexpr std::array<const char*, 3> kWeightNames = {"spectral.weight_r", "spectral.weight_g",
-                                                     "spectral.weight_b"};
-
-// A bake's weights add up to 1, so that white is white.
-void require_weights(const std::string& key, const std::vector<double>& weights) {
-  constexpr Interval kSum{0.5, 2};
-  require_in(key, weights, {-2, 2});
-  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
-  if (!(sum >= kSum.low && sum <= kSum.high))
-    throw Error("attribute '" + key + "' adds up to " + to_text(sum) + "; allowed: " + to_text(kSum.low) +
-                " to " + to_text(kSum.high));
-}
-
-Wavelengths read_wavelengths(const Attributes& attributes) {
-  Wavelengths w;
-  w.nm = parse_numbers(attributes, "spectral.nm");
-  w.albedo = parse_numbers(attributes, "spectral.albedo");
-  w.absorption = parse_numbers(attributes, "spectral.absorption");
-  const auto r = parse_numbers(attributes, kWeightNames[0]), g = parse_numbers(attributes, kWeightNames[1]),
-             b = parse_numbers(attributes, kWeightNames[2]);
-  const std::size_t count = w.nm.size();
-  for (const std::size_t size : {w.albedo.size(), w.absorption.size(), r.size(), g.size(), b.size()})
-    if (size != count || count > kMostWavelengths)
-      throw Error("attributes 'spectral.*' are lists of different lengths, or of more than " +
-                  std::to_string(kMostWavelengths));
-  require_in("spectral.nm", w.nm, {300, 1000});
-  require_in("spectral.albedo", w.albedo, {0, 1});
-  for (const double absorption : w.absorption)
-    if (!(absorption >= 0)) throw Error("attribute 'spectral.absorption' holds a negative number");
-  require_in("spectral.absorption", w.absorption, {0, 1e12});
-  const std::vector<double>* const weights[] = {&r, &g, &b};
-  for (int c = 0; c < 3; ++c) require_weights(kWeightNames[c], *weights[c]);
-  for (std::size_t k = 0; k < count; ++k) w.weight.push_back({r[k], g[k], b[k]});
-  return w;
-}
-
-void write_wavelengths(const Wavelengths& w, Attributes& attributes) {
-  attributes["spectral.nm"] = to_text(w.nm);
-  attributes["spectral.albedo"] = to_text(w.albedo);
-  attributes["spectral.absorption"] = to_text(w.absorption);
-  for (int c = 0; c < 3; ++c) {
-    std::vector<double> weights;
-    for (const Rgb& weight : w.weight) weights.push_back(weight[c]);
-    attributes[kWeightNames[c]] = to_text(weights);
-  }
-}
-
 constexpr const char* kGridPrefix = "grid.";
 
-Factors read_factors(TableParts& parts, const Table& table) {
-  Factors factors;
-  Attributes grid;
-  for (const auto& [key, value] : parts.attributes)
-    if (key.starts_with(kGridPrefix)) grid[key.substr(std::string_view(kGridPrefix).size())] = value;
-  factors.grid = parse_axes(grid, "grid");
-  if (factors.grid.size() != kParameterNames.size())
-    throw Error("attributes 'grid.*' do not describe 3 axes");
-  for (std::size_t k = 0; k < factors.grid.size(); ++k) {
-    const Axis& axis = factors.grid[k];
+std::vector<Axis> read_grid(const Attributes& attributes) {
+  Attributes described;
+  for (const auto& [key, value] : attributes)
+    if (key.starts_with(kGridPrefix)) described[key.substr(std::string_view(kGridPrefix).size())] = value;
+  const std::vector<Axis> grid = parse_axes(described, "grid");
+  if (grid.size() != kParameterNames.size()) throw Error("attributes 'grid.*' do not describe 3 axes");
+  for (std::size_t k = 0; k < grid.size(); ++k) {
+    const Axis& axis = grid[k];
     if (axis.name != kParameterNames[k])
       throw Error("grid axis " + std::to_string(k) + " is '" + axis.name + "'; expected '" +
                   kParameterNames[k] + "'");
     if (const std::string defect = axis.defect(); !defect.empty())
       throw Error("grid axis '" + axis.name + "' " + defect);
   }
-  factors.wavelengths = read_wavelengths(parts.attributes);
-  const bool is_warped =
-      FactorFrame(table.material, reaches_below_exterior(table.material, factors.grid[1].low())).is_warped();
+  return grid;
+}
+
+void read_single_film(TableParts& parts, const Table& table, bool is_warped, Factors& factors) {
   if (!table.material.is_smooth()) {
     factors.arrival = checked_array(parts, "arrival", is_warped ? kWarpedArrivalAxes : kArrivalAxes, 1);
     check_factor_axes(table, factors.arrival, 3);
@@ -164,8 +93,43 @@ Factors read_factors(TableParts& parts, const Table& table) {
   } else {
     factors.exchange = checked_array(parts, "exchange", is_warped ? kWarpedExchangeAxes : kExchangeAxes, 1);
     check_factor_axes(table, factors.exchange, 4);
-    check_same_ends(factors.exchange);
+    check_same_ends(factors.exchange, 4);
   }
+}
+
+// Nothing passes into an opaque base, and nothing comes back.
+void read_layered_film(TableParts& parts, const Table& table, bool is_warped, Factors& factors) {
+  const Material& material = table.material;
+  if (!material.is_smooth() && !material.is_opaque()) {
+    factors.facet_cosine = checked_array(parts, "facet_cosine", kFacetCosineAxes, 1);
+    factors.crossing = checked_array(parts, "crossing", kCrossingAxes, 1);
+    check_crossing_axes(table, factors.facet_cosine, factors.crossing);
+  }
+  if (material.absorption_path == AbsorptionPath::sum || material.is_opaque()) {
+    factors.return_cosine = checked_array(parts, "return_cosine", kReturnCosineAxes, 1);
+    factors.returning = checked_array(parts, "returning", kReturningAxes, 1);
+    check_returning_axes(table, factors.return_cosine, factors.returning);
+  } else {
+    factors.exchange =
+        checked_array(parts, "exchange", is_warped ? kWarpedLayeredExchangeAxes : kLayeredExchangeAxes, 1);
+    check_factor_axes(table, factors.exchange, 5);
+    check_same_ends(factors.exchange, 5);
+  }
+}
+
+Factors read_factors(TableParts& parts, const Table& table) {
+  Factors factors;
+  factors.grid = read_grid(parts.attributes);
+  factors.wavelengths = parse_wavelengths(parts.attributes);
+  const bool needs_layers = table.schema_version > kSingleFilmSchemaVersion;
+  if (needs_layers) parse_film(parts.attributes, factors.wavelengths);
+  if (needs_layers && !is_layered(table.material, factors.wavelengths))
+    throw Error("schema version is " + std::to_string(table.schema_version) +
+                ", but the film is one clear layer on a clear base of constant indices; expected " +
+                std::to_string(kSingleFilmSchemaVersion));
+  const bool is_warped =
+      FactorFrame(table.material, reaches_below_exterior(table.material, factors.grid[1].low())).is_warped();
+  (needs_layers ? read_layered_film : read_single_film)(parts, table, is_warped, factors);
   return factors;
 }
 
@@ -179,7 +143,11 @@ FrameKind read_frame(const Attributes& attributes) {
 void read_dense(TableParts& parts, Table& table) {
   table.frame = read_frame(parts.attributes);
   table.film_reflectance = checked_array(parts, "film_reflectance", kFilmAxes);
-  if (!table.material.is_smooth() && table.frame == FrameKind::closed)
+  const bool needs_layers = table.schema_version > kSingleFilmSchemaVersion;
+  if (needs_layers && table.frame != FrameKind::closed)
+    throw Error("attribute 'rest_frame' is '" + std::string(name_of(table.frame)) +
+                "'; allowed in schema version " + std::to_string(table.schema_version) + ": closed");
+  if ((!table.material.is_smooth() || needs_layers) && table.frame == FrameKind::closed)
     table.film_transmittance = checked_array(parts, "film_transmittance", kFilmAxes);
   table.remainder = checked_array(parts, "remainder", kRestAxes);
   table.rest_stderr = checked_array(parts, "rest_stderr", kRestAxes, 1);
@@ -241,21 +209,27 @@ void check_texts(const Attributes& attributes) {
   }
 }
 
+Material read_material(const Attributes& attributes, int schema_version) {
+  Material material;
+  for (const auto& key : material_keys()) {
+    const std::string attribute = "material." + key;
+    if (is_in_tables(key, schema_version))
+      set_from_text(material, key, require(attributes, attribute));
+    else if (attributes.contains(attribute))
+      throw Error("attribute '" + attribute + "' is there; allowed in schema version " +
+                  std::to_string(schema_version) + ": none of this name");
+  }
+  if (const auto defect = material.defect()) throw Error(defect->message());
+  return material;
+}
+
 // The arrays of `parts` go into the table, hence the hash before.
 Table build(TableParts& parts) {
   const int version = read_schema_version(parts);
   const std::string hash = content_hash_of(parts.attributes, {parts.arrays.begin(), parts.arrays.end()});
   Table table;
   table.schema_version = version;
-  for (const auto& key : material_keys()) {
-    const std::string attribute = "material." + key;
-    if (is_in_tables(key))
-      set_from_text(table.material, key, require(parts.attributes, attribute));
-    else if (parts.attributes.contains(attribute))
-      throw Error("attribute '" + attribute + "' is there; allowed in schema versions up to " +
-                  std::to_string(kTableSchemaVersion) + ": none of this name");
-  }
-  if (const auto defect = table.material.defect()) throw Error(defect->message());
+  table.material = read_material(parts.attributes, version);
   const std::string& symmetry = require(parts.attributes, "symmetry");
   if (symmetry != "isotropic" && symmetry != "anisotropic")
     throw Error("symmetry is '" + shortened(symmetry) + "'; allowed: isotropic, anisotropic");
@@ -268,6 +242,7 @@ Table build(TableParts& parts) {
     read_dense(parts, table);
   else
     throw Error("encoding is '" + shortened(encoding) + "'; allowed: dense, factored");
+  refuse_stray_film(parts.attributes, table.factors.wavelengths);
   check_ranges(table);
   check_below_exterior(table, version);
   if (!is_hash_of_content(require(parts.attributes, "content_hash"), hash))
@@ -281,60 +256,19 @@ Table build(TableParts& parts) {
   return table;
 }
 
+Attributes describe_material(const Material& material, int schema_version) {
+  Attributes attributes;
+  for (const auto& key : material_keys()) {
+    const std::string text = get_text(material, key), by_default = get_text(Material(), key);
+    if (is_in_tables(key, schema_version))
+      attributes[key] = text;
+    else if (text != by_default)
+      throw Error("key '" + key + "': found " + text + "; allowed in a table: " + by_default);
+  }
+  return attributes;
+}
+
 }  // namespace
-
-Attributes describe_axes(const std::vector<Axis>& axes) {
-  Attributes result;
-  for (std::size_t k = 0; k < axes.size(); ++k) {
-    const std::string prefix = "axis." + std::to_string(k) + ".";
-    result[prefix + "name"] = axes[k].name;
-    result[prefix + "unit"] = axes[k].unit;
-    result[prefix + "power"] = to_text(axes[k].power);
-    result[prefix + "period"] = to_text(axes[k].period);
-    result[prefix + "origin"] = to_text(axes[k].origin);
-    if (axes[k].softness > 0) result[prefix + "softness"] = to_text(axes[k].softness);
-    result[prefix + "interpolation"] = axes[k].is_cubic ? "cubic" : "linear";
-    result[prefix + "nodes"] = to_text(axes[k].nodes);
-  }
-  return result;
-}
-
-std::vector<Axis> parse_axes(const Attributes& attributes, const std::string& array_name) {
-  std::vector<Axis> axes;
-  for (std::size_t k = 0; k < NdArray::kMaxRank; ++k) {
-    const std::string prefix = "axis." + std::to_string(k) + ".";
-    if (!attributes.count(prefix + "name")) break;
-    Axis axis;
-    axis.name = require(attributes, prefix + "name");
-    axis.unit = require(attributes, prefix + "unit");
-    constexpr std::size_t kLongest = 100;
-    for (const std::string* text : {&axis.name, &axis.unit})
-      if (!is_plain_text(*text) || text->size() > kLongest)
-        throw Error("array '" + array_name + "': axis '" + shortened(axis.name) +
-                    "' has a name or unit that is not UTF-8, holds a control character or is longer than " +
-                    std::to_string(kLongest) + " bytes");
-    const auto number = [&](std::string_view text) {
-      double value = 0;
-      if (!parse_number(text, value))
-        throw Error("array '" + array_name + "': axis '" + axis.name + "' holds '" + shortened(text) +
-                    "', which is no number");
-      return value;
-    };
-    axis.power = number(require(attributes, prefix + "power"));
-    axis.period = number(require(attributes, prefix + "period"));
-    axis.origin = number(require(attributes, prefix + "origin"));
-    if (attributes.count(prefix + "softness")) axis.softness = number(attributes.at(prefix + "softness"));
-    const std::string& interpolation = require(attributes, prefix + "interpolation");
-    if (interpolation != "linear" && interpolation != "cubic")
-      throw Error("array '" + array_name + "': axis '" + axis.name + "' has interpolation '" +
-                  shortened(interpolation) + "'; allowed: linear, cubic");
-    axis.is_cubic = interpolation == "cubic";
-    for_each_word(require(attributes, prefix + "nodes"),
-                  [&](std::string_view node) { axis.nodes.push_back(number(node)); });
-    axes.push_back(std::move(axis));
-  }
-  return axes;
-}
 
 Attributes attributes_of(const TableView& view) {
   const Table& table = view.head();
@@ -343,19 +277,20 @@ Attributes attributes_of(const TableView& view) {
   if (!table.is_factored() && (table.film_reflectance.empty() || lacks_nodes))
     throw Error("an empty table cannot be written");
   for (const ArrayView& array : arrays) require_finite(array);
+  const int version = std::max(table.schema_version, kSingleFilmSchemaVersion);
   Attributes attributes = table.info;
-  attributes["schema_version"] = std::to_string(std::max(table.schema_version, kSingleFilmSchemaVersion));
+  attributes["schema_version"] = std::to_string(version);
   attributes["symmetry"] = name_of(table.symmetry);
-  for (const auto& key : material_keys()) {
-    const std::string text = get_text(table.material, key);
-    if (is_in_tables(key))
-      attributes["material." + key] = text;
-    else if (text != get_text(Material(), key))
-      throw Error("key '" + key + "': found " + text + "; allowed in a table: " + get_text(Material(), key));
-  }
+  for (const auto& [key, value] : describe_material(table.material, version))
+    attributes["material." + key] = value;
   if (table.is_factored()) {
     for (const auto& [key, value] : describe_axes(table.factors.grid)) attributes[kGridPrefix + key] = value;
-    write_wavelengths(table.factors.wavelengths, attributes);
+    attributes.merge(describe_wavelengths(table.factors.wavelengths));
+    Attributes film = describe_film(table.factors.wavelengths);
+    if (version <= kSingleFilmSchemaVersion && !film.empty())
+      throw Error("a film of layers or a dispersive base cannot be written in schema version " +
+                  std::to_string(version));
+    attributes.merge(film);
   } else {
     attributes["rest_frame"] = name_of(table.frame);
   }

@@ -5,92 +5,27 @@
 #include <limits>
 
 #include "tests/table/factored_tables.h"
+#include "tests/table/files/factor_defects.h"
 
 namespace sunbeam {
 namespace {
 
 using test::expect_error_or_equal;
+using test::expect_named;
 using test::Form;
 using test::forms;
+using test::in_colours;
+using test::kName;
 using test::refusal;
 using test::small_factored_table;
+using test::under_another_name;
+using test::with_grid;
+using test::with_name;
+using test::with_nodes;
+using test::with_wavelengths;
+using test::without_last_axis;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-
-constexpr const char* kName = "folder/some.table";
-
-struct Defect {
-  std::string description;
-  std::function<void(Table&)> make;
-  std::vector<std::string> named;  // what the message must say
-};
-
-NdArray rebuilt(const NdArray& array, std::vector<Axis> axes, std::size_t channels = 1) {
-  NdArray result(array.name(), std::move(axes), array.precision(), channels);
-  test::fill_randomly(result, 0, 1, 9);
-  return result;
-}
-
-using ArrayOf = NdArray Factors::*;
-
-std::function<void(Table&)> under_another_name(ArrayOf array) {
-  return [=](Table& table) {
-    const NdArray& old = table.factors.*array;
-    table.factors.*array = NdArray("stray", old.axes(), old.precision(), 1);
-  };
-}
-
-std::function<void(Table&)> with_axis(ArrayOf array, std::size_t k,
-                                      const std::function<void(Axis&)>& change) {
-  return [=](Table& table) {
-    auto axes = (table.factors.*array).axes();
-    change(axes[k]);
-    table.factors.*array = rebuilt(table.factors.*array, axes);
-  };
-}
-
-std::function<void(Table&)> with_nodes(ArrayOf array, std::size_t k, const std::vector<double>& nodes) {
-  return with_axis(array, k, [=](Axis& axis) { axis.nodes = nodes, axis.power = 1; });
-}
-
-std::function<void(Table&)> with_name(ArrayOf array, std::size_t k, const std::string& name) {
-  return with_axis(array, k, [=](Axis& axis) { axis.name = name; });
-}
-
-std::function<void(Table&)> without_last_axis(ArrayOf array) {
-  return [=](Table& table) {
-    auto axes = (table.factors.*array).axes();
-    axes.pop_back();
-    table.factors.*array = rebuilt(table.factors.*array, axes);
-  };
-}
-
-std::function<void(Table&)> in_colours(ArrayOf array) {
-  return [=](Table& table) {
-    table.factors.*array = rebuilt(table.factors.*array, (table.factors.*array).axes(), 3);
-  };
-}
-
-std::function<void(Table&)> with_grid(std::size_t k, const std::function<void(Axis&)>& change) {
-  return [=](Table& table) { change(table.factors.grid[k]); };
-}
-
-std::function<void(Table&)> with_wavelengths(const std::function<void(Wavelengths&)>& change) {
-  return [=](Table& table) { change(table.factors.wavelengths); };
-}
-
-void expect_named(const Table& sound, const std::vector<Defect>& defects) {
-  for (const Form& form : forms())
-    for (const Defect& defect : defects) {
-      Table table = sound;
-      ASSERT_EQ(refusal(form, form.bytes(table), kName), "accepted");
-      defect.make(table);
-      const std::string message = refusal(form, form.bytes(table), kName);
-      EXPECT_THAT(message, StartsWith(kName)) << form.name << ", " << defect.description;
-      for (const std::string& part : defect.named)
-        EXPECT_THAT(message, HasSubstr(part)) << form.name << ", " << defect.description;
-    }
-}
 
 TEST(FactoredReader, NamesDefectsOfTheArrays) {
   expect_named(

@@ -230,16 +230,16 @@ TEST(TableReader, UnknownRestFrame) {
 
 TEST(TableReader, UnknownSchemaVersion) {
   for (const Form& form : forms())
-    for (const std::string version : {"4", "1"}) {
+    for (const std::string version : {"5", "1"}) {
       const auto bytes = with_attribute(form, form.bytes(small_table()), "schema_version", "3", version);
       EXPECT_THAT(refusal(form, bytes, kName),
-                  AllOf(StartsWith(kName), HasSubstr("'" + version + "'"), HasSubstr("2 to 3")))
+                  AllOf(StartsWith(kName), HasSubstr("'" + version + "'"), HasSubstr("2 to 4")))
           << form.name;
     }
 }
 
-// No table holds such a film, and a look-up would take it for another.
-TEST(TableReader, FilmsThatNoTableHolds) {
+// A look-up would take such a film for another.
+TEST(TableReader, FilmsThatNoTableOfVersion3Holds) {
   for (const std::string key : {"thickness_spread", "base_extinction"}) {
     Table table = small_table();
     table.info["material." + key] = "0.1";

@@ -24,6 +24,9 @@
 namespace sunbeam {
 inline namespace v1 {
 
+// The longest path 2 sum(n d) that the mean over uneven platelets is taken of.
+inline constexpr double kMostFilmWaves = 100;
+
 struct FilmStack {
   double exterior_ior;              // n0 > 0
   std::vector<FilmLayer> layers;    // from top to bottom
@@ -55,7 +58,7 @@ class StackSpectrum {
 
   // Takes a stack for each wavelength, equal in number of layers and periods. `spread` is the relative
   // standard deviation of one factor on all thicknesses, normal and cut at three deviations; at most 1 / 3.
-  // With a spread it throws Error if the path 2 sum(n d) is longer than 100 wavelengths.
+  // With a spread it throws Error if the path 2 sum(n d) is longer than kMostFilmWaves wavelengths.
   StackSpectrum(const std::vector<FilmStack>& stacks, const std::vector<double>& wavelengths_nm,
                 double spread = 0, double spread_orders = kAllOrders);
 

@@ -11,7 +11,7 @@ inline namespace v1 {
 inline constexpr double kDeepestProduct = 40;
 
 // Throws Error naming the array, the value and the range if an array of `table` leaves its range, or if the
-// optical depths of path "product" do. What bakes write passes with room.
+// optical depths of path "product" or a layered film do. What bakes write passes with room.
 void require_in_ranges(const Table& table);
 
 }  // namespace v1

@@ -16,6 +16,10 @@ inline namespace v1 {
 // Live models keep what they carry on the stack.
 inline constexpr std::size_t kMostWavelengths = 64;
 
+// The indices n + i k that media may have, and the most layers of a film, those of all periods counted.
+inline constexpr double kLeastIor = 0.05, kLargestIor = 10, kMostExtinction = 100;
+inline constexpr int kMostFilmLayers = 1000;
+
 // One layer of a film at one wavelength.
 struct FilmLayer {
   double thickness_nm;         // >= 0

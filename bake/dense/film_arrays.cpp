@@ -1,48 +1,17 @@
 #include "bake/dense/film_arrays.h"
 
+#include "bake/dense/film_axes.h"
+#include "bake/dense/film_colors.h"
 #include "bake/live/film/geometry.h"
-#include "bake/optics/wavelength_quadrature.h"
-#include "sunbeam/detail/factor_frame.h"
 
 namespace sunbeam {
 namespace {
 
-constexpr double kPhaseStep = 0.5;  // rad of film phase between thickness nodes: cubic to 0.15 % of a fringe
-constexpr std::size_t kCosines = 65, kCosinesAboutKnee = 129;
-constexpr double kSmallestCosine = 1e-8;  // the node at 0 holds the limit from above: 0 without interfaces
 // Nodes of F over the optical path, even in its cube root: linear to 1e-5 of a white base for |a| up to 4.
 constexpr std::size_t kPathNodes = 2048;
 constexpr double kLongestPath = 100;      // optical depths; F is constant beyond
 constexpr std::size_t kNormalNodes = 48;  // quadrature over visible normals, each way
 constexpr int kQuadrantAzimuths = 4;      // midpoints, of an anisotropic film
-
-Axis film_thickness_axis(const Recipe& recipe) {
-  Axis axis = recipe.grid[0];
-  axis.is_cubic = true;
-  const double span = axis.high() - axis.low();
-  const auto nm = recipe.spectrum.wavelengths(recipe.material).nm;
-  const double phase = 4 * kPi * recipe.material.film_ior * span / *std::min_element(nm.begin(), nm.end());
-  if (axis.size() > 1)
-    axis.nodes =
-        spaced_nodes(axis.low(), axis.high(), static_cast<std::size_t>(std::ceil(phase / kPhaseStep)) + 2);
-  return axis;
-}
-
-Axis film_ior_axis(const Recipe& recipe) {
-  Axis axis = recipe.grid[1];
-  axis.is_cubic = true;
-  return axis;
-}
-
-// Even, or about the critical angle of the one base IOR that lies below the exterior's.
-Axis film_cosine_axis(const Recipe& recipe) {
-  Axis axis{"cos_theta", "1", spaced_nodes(0, 1, kCosines), 1, 0, 0, true};
-  if (!reaches_below(recipe)) return axis;
-  axis.power = 2;
-  axis.origin = critical_cosine(at_lowest_base_ior(recipe));
-  axis.nodes = spaced_nodes(axis, 0, 1, kCosinesAboutKnee);
-  return axis;
-}
 
 // Directions at this cosine: one for an isotropic film, else some of a quadrant; the other three are its
 // mirror images.
@@ -61,7 +30,7 @@ std::vector<double> crossing_weights(const Material& material, const Axis& cosin
   const std::size_t n = cosines.size();
   std::vector<double> weights(n * n);
   for (std::size_t i = 0; i < n; ++i) {
-    const auto directions = directions_at(std::max(cosines.nodes[i], kSmallestCosine), material.roughness);
+    const auto directions = directions_at(std::max(cosines.nodes[i], kLeastFilmCosine), material.roughness);
     for (const Vec3& w : directions)
       for (std::size_t k = 0; k < kNormalNodes * kNormalNodes; ++k) {
         const double u = (static_cast<double>(k % kNormalNodes) + 0.5) / kNormalNodes;
@@ -78,11 +47,9 @@ std::vector<double> crossing_weights(const Material& material, const Axis& cosin
   return weights;
 }
 
-Rgb weighted_transmittance(const NdArray& reflectance, std::size_t first_cell,
-                           std::span<const double> weights) {
+Rgb weighted(const std::vector<Rgb>& transmittances, std::span<const double> weights) {
   Rgb sum;
-  for (std::size_t j = 0; j < weights.size(); ++j)
-    sum += weights[j] * (Rgb(1) - reflectance.get(first_cell + j));
+  for (std::size_t j = 0; j < weights.size(); ++j) sum += weights[j] * transmittances[j];
   return sum;
 }
 
@@ -101,36 +68,35 @@ NdArray first_visit(const Recipe& recipe) {
 
 }  // namespace
 
-std::vector<Axis> film_axes(const Recipe& recipe) {
-  return {film_thickness_axis(recipe), film_ior_axis(recipe), film_cosine_axis(recipe)};
-}
-
 void bake_film(const Recipe& recipe, Table& table) {
   const auto axes = film_axes(recipe);
   const Axis &thickness = axes[0], &ior = axes[1], &cosine = axes[2];
-  const bool passes = !recipe.material.is_smooth();
+  const Wavelengths wavelengths = recipe.spectrum.wavelengths(recipe.material);
+  const bool layered = is_layered(recipe.material, wavelengths), rough = !recipe.material.is_smooth();
   if (recipe.spectrum.is_full()) table.first_visit = first_visit(recipe);
   table.film_reflectance = NdArray("film_reflectance", axes, Precision::single_float);
-  if (passes) table.film_transmittance = NdArray("film_transmittance", axes, Precision::single_float);
+  if (rough || layered)
+    table.film_transmittance = NdArray("film_transmittance", axes, Precision::single_float);
 
-  const Wavelengths wavelengths = recipe.spectrum.wavelengths(recipe.material);
-  const WavelengthQuadrature spectrum{wavelengths.nm, wavelengths.weight};
   for (std::size_t b = 0; b < ior.size(); ++b) {
     Material material = recipe.material;
     material.base_ior = ior.nodes[b];
-    const auto weights = passes ? crossing_weights(material, cosine) : std::vector<double>();
+    const auto weights = rough ? crossing_weights(material, cosine) : std::vector<double>();
     for (std::size_t a = 0; a < thickness.size(); ++a) {
       material.film_thickness_nm = thickness.nodes[a];
-      const ThinFilm film = ThinFilm::of(material);
+      const FilmColors film(material, wavelengths);
       const std::size_t row = a * table.film_reflectance.stride(0) + b * table.film_reflectance.stride(1);
-      for (std::size_t c = 0; c < cosine.size(); ++c)
-        table.film_reflectance.set(
-            row + c, spectrum.fold_film(film, std::max(cosine.nodes[c], kSmallestCosine)).reflectance);
-      if (!passes) continue;
+      std::vector<Rgb> through;
+      for (std::size_t c = 0; c < cosine.size(); ++c) {
+        const FilmPower power = film.at(std::max(cosine.nodes[c], kLeastFilmCosine));
+        table.film_reflectance.set(row + c, power.reflectance);
+        through.push_back(layered ? power.transmittance : Rgb(1) - table.film_reflectance.get(row + c));
+      }
+      if (table.film_transmittance.empty()) continue;
       for (std::size_t c = 0; c < cosine.size(); ++c)
         table.film_transmittance.set(
-            row + c, weighted_transmittance(table.film_reflectance, row,
-                                            std::span(weights).subspan(c * cosine.size(), cosine.size())));
+            row + c, rough ? weighted(through, std::span(weights).subspan(c * cosine.size(), cosine.size()))
+                           : through[c]);
     }
   }
 }

@@ -1,15 +1,11 @@
-// This file makes the closed-form part of a table. It is the film's reflectance and, for a rough film, its
-// mean transmittance; in spectrum "full" also the base on its own.
+// This file makes the closed-form part of a table. It is the film's reflectance and, for a rough or layered
+// film, its mean transmittance; in spectrum "full" also the base on its own.
 #pragma once
 
 #include "bake/recipe/recipe.h"
 #include "sunbeam/table.h"
 
 namespace sunbeam {
-
-// Returns the axes (film_thickness_nm, base_ior, cos_theta) of the film arrays. They are finer than the grid,
-// as fringes need.
-std::vector<Axis> film_axes(const Recipe& recipe);
 
 // Fills table.film_reflectance, table.film_transmittance and table.first_visit for the recipe's grid.
 void bake_film(const Recipe& recipe, Table& table);

@@ -73,8 +73,9 @@ DenseNodes::DenseNodes(const Recipe& recipe)
                    static_cast<std::size_t>(recipe.table.azimuths)) {
   head_.material = recipe.material;
   head_.symmetry = symmetry_of(recipe);
+  if (recipe.spectrum.film().is_layered(recipe.material)) head_.schema_version = kTableSchemaVersion;
   bake_film(recipe, head_);
-  frame_.emplace(recipe.material, head_.first_visit);
+  frame_.emplace(recipe.material, head_.first_visit, head_.has_layered_film());
   const auto axes = rest_axes(recipe);
   remainder_ = ArrayShape("remainder", axes, recipe.table.precision);
   rest_stderr_ = ArrayShape("rest_stderr", axes, Precision::single_float, 1);

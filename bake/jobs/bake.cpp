@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "bake/blocks/run.h"
-#include "bake/dense/film_arrays.h"
+#include "bake/dense/film_axes.h"
 #include "bake/dense/nodes.h"
 #include "bake/dense/solved_job.h"
 #include "bake/dense/walked_job.h"
@@ -38,7 +38,8 @@ double bytes_of(const Recipe& recipe, Encoding encoding) {
     return bytes;
   }
   const double value = recipe.table.precision == Precision::half_float ? 2 : 4;
-  const double films = recipe.material.is_smooth() ? 1 : 2;
+  const bool is_layered = recipe.spectrum.film().is_layered(recipe.material);
+  const double films = recipe.material.is_smooth() && !is_layered ? 1 : 2;
   return (3 * value + 4) * cells_of(rest_axes(recipe)) + films * 3 * 4 * cells_of(film_axes(recipe));
 }
 

@@ -63,7 +63,8 @@ DenseRest::DenseRest(const Table& table)
       remainder_(nodes_of(table.remainder)),
       axes_(first_axes(table.remainder)),
       reflectance_(table.film_reflectance) {
-  if (table.frame == FrameKind::closed) frame_.emplace(material_, table.first_visit);
+  if (table.frame == FrameKind::closed)
+    frame_.emplace(material_, table.first_visit, table.has_layered_film());
   if (!table.film_transmittance.empty()) transmittance_.emplace(table.film_transmittance);
 }
 
@@ -75,7 +76,7 @@ DenseRest::DenseRest(const Table& table, const Material& material)
   angles_.emplace(sliced, symmetry_);
   remainder_ = nodes_of(sliced);
   if (table.frame == FrameKind::none) return;
-  frame_.emplace(material, table.first_visit);
+  frame_.emplace(material, table.first_visit, table.has_layered_film());
   const bool reflects = table.film_transmittance.empty();
   const NdArray film =
       (reflects ? table.film_reflectance : table.film_transmittance).slice(std::span(point).first(2));

@@ -13,6 +13,9 @@ constexpr double kSmallestCosine = 1e-6;
 // the fringes of T in front: a film of index 1.56 in air, whatever its thickness, lets through more than this
 // at cosines above 0.2.
 constexpr double kLeastOverMultipleFacets = 0.25;
+// Layers may let through so little that nodes of T do not hold it, and the rest must not be divided by what
+// is left of it.
+constexpr double kLeastOfLayers = 0.01;
 
 // How far F has fallen from `start`, per channel. A channel that starts or ends near 0, or beyond, while
 // others have light stays within a factor of 10 of their mean, so that the remainder stays bounded.
@@ -47,19 +50,22 @@ bool bends_below_exterior(const Material& m) {
 
 }  // namespace
 
-RestFrame::RestFrame(const Material& material, FirstVisit first_visit)
+RestFrame::RestFrame(const Material& material, FirstVisit first_visit, bool is_layered)
     : material_(material),
+      is_layered_(is_layered),
       scale_(material.radiance_scale()),
-      least_transmittance_(material.has_multiple_facets() ? kLeastOverMultipleFacets : 0),
+      least_transmittance_(material.has_multiple_facets() ? kLeastOverMultipleFacets
+                           : is_layered                   ? kLeastOfLayers
+                                                          : 0),
       decays_(!material.scatters() && !material.has_multiple_facets() && !bends_below_exterior(material)),
       first_visit_(std::move(first_visit)) {}
 
-RestFrame::RestFrame(const Material& material, const NdArray& first_visit)
-    : RestFrame(material, even_steps(first_visit)) {}
+RestFrame::RestFrame(const Material& material, const NdArray& first_visit, bool is_layered)
+    : RestFrame(material, even_steps(first_visit), is_layered) {}
 
 // No counting of owners: threads would wait for each other.
 RestFrame RestFrame::over(const Material& material) const {
-  return {material, FirstVisit(FirstVisit(), first_visit_.get())};
+  return {material, FirstVisit(FirstVisit(), first_visit_.get()), is_layered_};
 }
 
 RestFrame::Terms RestFrame::terms(double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const {

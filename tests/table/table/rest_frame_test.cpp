@@ -230,6 +230,47 @@ TEST(RestFrame, OpaqueFilm) {
   EXPECT_EQ(frame.decode(Rgb(1), 0.5, 0.5, Rgb(0), Rgb(1)), Rgb(0));
 }
 
+// Layers may let nothing through, or so little that T between nodes is noise. What little rest there is comes
+// back, T is raised to 0.01 in front of it, and nothing is divided by 0.
+TEST(RestFrame, OfALayeredFilmRaisesWhatPasses) {
+  Rng rng(8, 0);
+  for (int k = 0; k < 10000; ++k) {
+    Case c = random_case(rng), raised = c;
+    if (k % 2) c.t_i = random_colour(rng, -1e-3, 0.01), raised.t_i = Rgb(0.01);
+    if (k % 3) c.t_o = Rgb(0), raised.t_o = Rgb(0.01);
+    const Formula formula(raised);
+    const RestFrame frame(c.material, NdArray(), true);
+    const Rgb remainder = random_colour(rng, 0, 2);
+    const Rgb rest = frame.decode(remainder, c.cos_i, c.cos_o, c.t_i, c.t_o);
+    for (int j = 0; j < 3; ++j) {
+      const double expected = formula.front[j] * (formula.first_visit[j] + formula.decay * remainder[j]);
+      EXPECT_NEAR(rest[j], expected, 1e-12 * expected + 1e-300) << k;
+    }
+    const Rgb again = frame.encode(rest, c.cos_i, c.cos_o, c.t_i, c.t_o);
+    for (int j = 0; j < 3; ++j)
+      EXPECT_NEAR(again[j], remainder[j], 1e-12 * (remainder[j] + formula.first_visit[j] / formula.decay))
+          << k;
+    const Rgb dark = frame.encode(Rgb(0), c.cos_i, c.cos_o, c.t_i, c.t_o);
+    ASSERT_TRUE(is_finite(dark)) << k;
+    EXPECT_LT(max_component(frame.decode(dark, c.cos_i, c.cos_o, c.t_i, c.t_o)), 1e-13) << k;
+  }
+}
+
+// Nothing is seen below an opaque base: a rest of nothing comes back as nothing from halves.
+TEST(RestFrame, OverAnOpaqueBaseIsBlack) {
+  Material m;
+  m.base_ior = 0.3;
+  m.base_extinction = 3;
+  m.albedo = Rgb(0);
+  m.absorption_per_nm = 0;
+  for (const bool has_many : {false, true}) {
+    m.microfacet = has_many ? Microfacet::multiple : Microfacet::single;
+    const RestFrame frame(m, NdArray(), true);
+    EXPECT_EQ(frame.encode(Rgb(0), 0.5, 0.01, Rgb(0), Rgb(0)), Rgb(0));
+    EXPECT_EQ(frame.decode(Rgb(0), 0.5, 0.01, Rgb(0), Rgb(0)), Rgb(0));
+  }
+}
+
 // For the sum path and a smooth film the rest is s T T kd/pi exp(-tau (1/m_i + 1/m_o)) / (1 - kd rho): the
 // remainder is then kd/pi kd rho / (1 - kd rho) wherever the decay is below its cap. tau (1/m_i + 1/m_o) <=
 // 0.2 * 20 = 4 here.

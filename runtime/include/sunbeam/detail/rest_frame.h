@@ -19,8 +19,8 @@ class RestFrame {
   // bake (bake/dense/lobes.h).
   static constexpr double kLargestRemainder = 60000;
 
-  // Makes the frame of a material. `first_visit` is that of Table: empty for rgb3.
-  explicit RestFrame(const Material& material, const NdArray& first_visit = {});
+  // Makes the frame of a material, whose film may be layered. `first_visit` is that of Table: empty for rgb3.
+  explicit RestFrame(const Material& material, const NdArray& first_visit = {}, bool is_layered = false);
 
   // Returns the same frame over another material; it allocates nothing and lives no longer than this one.
   RestFrame over(const Material& material) const;
@@ -32,7 +32,7 @@ class RestFrame {
   // Holds F at even steps of x / (1 + x) from 0 to 1, so that a look-up needs no search and no root; there is
   // none for rgb3.
   using FirstVisit = std::shared_ptr<const std::vector<Rgb>>;
-  RestFrame(const Material& material, FirstVisit first_visit);
+  RestFrame(const Material& material, FirstVisit first_visit, bool is_layered);
 
   struct Terms {
     Rgb front;        // s T T
@@ -47,6 +47,7 @@ class RestFrame {
   Terms terms(double cos_i, double cos_o, const Rgb& t_i, const Rgb& t_o) const;
 
   Material material_;
+  bool is_layered_;
   double scale_;
   double least_transmittance_;
   bool decays_;

@@ -15,7 +15,7 @@ constexpr double kDepthStep = 0.05;  // of the root of a depth
 constexpr double kFringeError =
     2e-5;  // of the film's transmittance between nodes, relative, mean of a fringe
 constexpr int kMostTerms = EvenSamples::kStencil * EvenSamples::kStencil;
-constexpr std::size_t kOrdersTogether = 16;  // solved as one task
+constexpr std::size_t kOrdersTogether = 16;  // of a single film, solved as one task
 
 // Time that a depth and an order take before anything is solved with them, in responses.
 constexpr double kDepthCost = 70, kOrderCost = 5;
@@ -88,6 +88,7 @@ void fold(const Rgb& weight, const double* values, int count, double* r, double*
 SlabFilms::SlabFilms(const Material& material, const Wavelengths& wavelengths, Grid grid)
     : grid_(std::move(grid)),
       wavelengths_(wavelengths),
+      is_layered_(is_layered(material, wavelengths)),
       film_ior_(material.film_ior),
       pigment_thickness_nm_(material.pigment_thickness_nm),
       solver_(material, grid_.cosine, resolution()),
@@ -99,21 +100,38 @@ SlabFilms::SlabFilms(const Material& material, const Wavelengths& wavelengths, G
   }
 }
 
+std::vector<double> SlabFilms::orders(std::size_t thickness) const {
+  if (!is_layered_) return fringe_orders(film_ior_, grid_.film_thickness_nm[thickness], wavelengths_);
+  std::vector<double> numbers;
+  for (std::size_t j = 0; j < wavelengths_.size(); ++j)
+    numbers.push_back(static_cast<double>(thickness * wavelengths_.size() + j));
+  return numbers;
+}
+
+// Those of a layered film are all of one thickness.
+SlabSolver::Fringes SlabFilms::fringes(std::span<const std::size_t> orders) const {
+  if (is_layered_)
+    return solver_.fringes(grid_.film_thickness_nm[orders.front() / wavelengths_.size()], wavelengths_);
+  std::vector<double> order;
+  for (const std::size_t o : orders) order.push_back(nodes_.order[o]);
+  return {solver_, order};
+}
+
 double SlabFilms::root_depth(std::size_t absorption, std::size_t wavelength) const {
   return std::sqrt(grid_.absorption_per_nm[absorption] * pigment_thickness_nm_ *
                    wavelengths_.absorption[wavelength]);
 }
 
 SlabFilms::Nodes SlabFilms::choose_nodes() const {
-  std::set<double> orders, roots;
-  for (const double thickness : grid_.film_thickness_nm)
-    for (const double order : fringe_orders(film_ior_, thickness, wavelengths_)) orders.insert(order);
+  std::set<double> all_orders, roots;
+  for (std::size_t t = 0; t < grid_.film_thickness_nm.size(); ++t)
+    for (const double order : orders(t)) all_orders.insert(order);
   for (std::size_t a = 0; a < grid_.absorption_per_nm.size(); ++a)
     for (std::size_t j = 0; j < wavelengths_.size(); ++j) roots.insert(root_depth(a, j));
-  std::vector<EvenSamples> order_choices{EvenSamples(sorted(orders))},
+  std::vector<EvenSamples> order_choices{EvenSamples(sorted(all_orders))},
       root_choices{EvenSamples(sorted(roots)), {kDepthStep, *roots.rbegin()}};
-  if (const int nodes = nodes_per_fringe(solver_, grid_.cosine.size()))
-    order_choices.emplace_back(1.0 / nodes, *orders.rbegin());
+  if (const int nodes = is_layered_ ? 0 : nodes_per_fringe(solver_, grid_.cosine.size()))
+    order_choices.emplace_back(1.0 / nodes, *all_orders.rbegin());
   Nodes best{order_choices.front(), root_choices.front()};
   double least = std::numeric_limits<double>::infinity();
   for (const EvenSamples& order : order_choices)
@@ -135,8 +153,7 @@ void SlabFilms::each_pair(const Nodes& nodes, std::size_t first, std::size_t las
       depths.insert(at.node.begin(), at.node.begin() + at.count);
     }
     for (std::size_t t = first; t < last; ++t) {
-      const EvenSamples::Stencil at =
-          nodes.order.at(fringe_orders(film_ior_, grid_.film_thickness_nm[t], wavelengths_)[j]);
+      const EvenSamples::Stencil at = nodes.order.at(orders(t)[j]);
       for (int i = 0; i < at.count; ++i)
         for (const std::size_t d : depths) visit(at.node[i], d);
     }
@@ -169,18 +186,17 @@ void SlabFilms::prepare(std::size_t first, std::size_t last, const ForEach& for_
   const std::vector<double> each_depth = sorted(depths);
   for_each(each_depth.size(), [&](std::size_t k) { solver_.add_depth(each_depth[k]); });
 
-  std::vector<std::size_t> orders;
+  std::vector<std::size_t> unsolved;
   for (std::size_t o = 0; o < missing.size(); ++o)
-    if (!missing[o].empty()) orders.push_back(o);
-  for_each((orders.size() + kOrdersTogether - 1) / kOrdersTogether, [&](std::size_t task) {
-    const auto together = std::span(orders).subspan(
-        task * kOrdersTogether, std::min(kOrdersTogether, orders.size() - task * kOrdersTogether));
-    std::vector<double> order;
-    for (const std::size_t o : together) order.push_back(nodes_.order[o]);
-    const SlabSolver::Fringes fringes(solver_, order);
+    if (!missing[o].empty()) unsolved.push_back(o);
+  const std::size_t at_once = is_layered_ ? wavelengths_.size() : kOrdersTogether;
+  for_each((unsolved.size() + at_once - 1) / at_once, [&](std::size_t task) {
+    const std::size_t start = task * at_once;
+    const auto together = std::span(unsolved).subspan(start, std::min(at_once, unsolved.size() - start));
+    const SlabSolver::Fringes films = fringes(together);
     for (std::size_t k = 0; k < together.size(); ++k)
       for (const std::size_t d : missing[together[k]])
-        response_[nodes_.pair(together[k], d)] = flatten(fringes.response(k, square(nodes_.root_depth[d])));
+        response_[nodes_.pair(together[k], d)] = flatten(films.response(k, square(nodes_.root_depth[d])));
   });
 }
 
@@ -206,10 +222,9 @@ void SlabFilms::rest(std::size_t thickness, std::size_t absorption, std::span<Rg
   const std::size_t slab_cells = cosines * (cosines + 1) / 2 * azimuths;
   const auto size = static_cast<int>(slab_cells + cosines + 1);
   std::vector<double> spectral(size), r(slab_cells), g(slab_cells), b(slab_cells);
-  const std::vector<double> orders =
-      fringe_orders(film_ior_, grid_.film_thickness_nm[thickness], wavelengths_);
+  const std::vector<double> order_of = orders(thickness);
   for (std::size_t j = 0; j < wavelengths_.size(); ++j) {
-    const EvenSamples::Stencil order = nodes_.order.at(orders[j]),
+    const EvenSamples::Stencil order = nodes_.order.at(order_of[j]),
                                depth = nodes_.root_depth.at(root_depth(absorption, j));
     std::array<double, kMostTerms> weight;
     std::array<const double*, kMostTerms> response;

@@ -5,6 +5,7 @@
 // What both send back is even and smooth in x and in sqrt(t), so a large grid need not solve every
 // (thickness, wavelength, absorption): it solves nodes in equal steps of x and sqrt(t), as many a fringe as
 // the film asks for, and interpolates with degree 7. Small grids are solved directly, whichever is cheaper.
+// A layered film is solved at each thickness and wavelength, since its indices may depend on the latter.
 // The base's albedo comes last (SlabSolver::Response::base), so that spectra of it cost nothing.
 // tests/accuracy/dense/slab_films_test.cpp compares it with direct solutions.
 #pragma once
@@ -44,13 +45,16 @@ class SlabFilms {
   std::size_t responses() const;
 
  private:
-  // Says what is solved: Response at some orders x and roots of depths.
+  // Says what is solved: Response at some orders x and roots of depths. The orders of a layered film are
+  // numbers of (thickness, wavelength).
   struct Nodes {
     EvenSamples order, root_depth;
     std::size_t pair(std::size_t o, std::size_t d) const { return o * root_depth.size() + d; }
   };
 
   Nodes choose_nodes() const;
+  std::vector<double> orders(std::size_t thickness) const;  // of each wavelength
+  SlabSolver::Fringes fringes(std::span<const std::size_t> orders) const;
   double root_depth(std::size_t absorption, std::size_t wavelength) const;
   template <class Visit>
   void each_pair(const Nodes& nodes, std::size_t first, std::size_t last, Visit visit) const;
@@ -60,6 +64,7 @@ class SlabFilms {
 
   Grid grid_;
   Wavelengths wavelengths_;
+  bool is_layered_;
   double film_ior_, pigment_thickness_nm_;
   SlabSolver solver_;
   std::vector<std::vector<double>> cos_;  // of mode times azimuth

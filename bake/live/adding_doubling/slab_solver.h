@@ -96,7 +96,7 @@ class SlabSolver {
     std::vector<std::vector<Mode>> modes_;  // by (order, mode)
   };
 
-  // Prepares the film, a layered one too, at one thickness and all wavelengths, for many depths.
+  // Holds the film, a layered one too, at one thickness and all wavelengths, for many depths.
   class Film {
    public:
     Film(const SlabSolver& solver, double film_thickness_nm, const Wavelengths& wavelengths);
@@ -119,6 +119,9 @@ class SlabSolver {
     Wavelengths wavelengths_;
     Fringes fringes_;
   };
+
+  // Prepares the film, a layered one too, at one thickness and all wavelengths.
+  Fringes fringes(double film_thickness_nm, const Wavelengths& wavelengths) const;
 
   // Returns the share of light along the cosine of this number that single films of these fringe orders, at
   // most kMostWavelengths, let in.
@@ -167,7 +170,6 @@ class SlabSolver {
   enum class Part { reflectance, transmittance };
   std::vector<double> moments(const std::vector<FacetList>& rows, sunbeam::Side side, Part part,
                               const walk::FilmPhases& phases) const;
-  Fringes fringes(double film_thickness_nm, const Wavelengths& wavelengths) const;
   Phase phase(int mode) const;
   Layer make_layer(double depth) const;
   void double_up(int mode, double depth, Matrix& r, Matrix& t) const;

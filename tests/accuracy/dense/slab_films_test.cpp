@@ -8,6 +8,7 @@
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/axis.h"
 #include "sunbeam/detail/quadrature.h"
+#include "tests/support/layered_films.h"
 
 namespace sunbeam {
 namespace {
@@ -100,6 +101,29 @@ TEST(SlabFilms, AgreeWithDirectSolutions) {
       EXPECT_LT(largest_error(nodes, values, film.rest(depth)), 1e-4)
           << "base IOR " << c.material.base_ior << ", roughness " << c.material.roughness.u << ", thickness "
           << nodes.film_thickness_nm[thickness] << ", absorption " << nodes.absorption_per_nm[absorption];
+    }
+  }
+}
+
+// At every thickness and wavelength for itself, whatever the layers do.
+TEST(SlabFilms, OfLayersAgreeWithDirectSolutions) {
+  Material material = slab(1.5, 0.1);
+  material.albedo = {0.7, 0.4, 0.2};
+  SlabFilms::Grid nodes = grid(3, 3);
+  for (const test::LayeredFilm& film : test::layered_films(material)) {
+    nodes.film_thickness_nm = {0.5 * film.material.film_thickness_nm, film.material.film_thickness_nm};
+    SlabFilms films(film.material, film.wavelengths, nodes);
+    EXPECT_EQ(films.responses(), 2 * 3 * 3);
+    films.prepare(1, 2, one_by_one);
+    for (const std::size_t absorption : {0, 2}) {
+      std::vector<Rgb> values(films.cells());
+      films.rest(1, absorption, values);
+      SlabSolver solver(film.material, nodes.cosine);
+      const double depth = nodes.absorption_per_nm[absorption] * material.pigment_thickness_nm;
+      solver.add_depth(depth);
+      const SlabSolver::Film direct(solver, nodes.film_thickness_nm[1], film.wavelengths);
+      EXPECT_LT(largest_error(nodes, values, direct.rest(depth)), 1e-4)
+          << film.name << ", absorption " << nodes.absorption_per_nm[absorption];
     }
   }
 }

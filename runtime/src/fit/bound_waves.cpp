@@ -38,11 +38,21 @@ double BoundWaves::returned(const Factors& factors, std::size_t k) const {
       .r;
 }
 
+// The coordinates of `exchange` that come before those of directions.
+std::vector<double> BoundWaves::exchange_point(std::size_t k) const {
+  const Material& material = field_.material();
+  const Wavelengths& wavelengths = field_.wavelengths();
+  if (!layered_) return {material.base_ior, field_.depth(k), wavelengths.albedo[k], fringe_order_of(k, 1)};
+  const double path = path_per_thickness(material, wavelengths, k) * material.film_thickness_nm;
+  return {material.base_ior, field_.depth(k), wavelengths.albedo[k], wavelengths.nm[k],
+          path / wavelengths.nm[k]};
+}
+
 void BoundWaves::take_exchange(const Factors& factors) {
-  axes_ = {factors.exchange.axes()[4], factors.exchange.axes()[5]};
   for (std::size_t k = 0; k < field_.size(); ++k) {
-    const NdArray slice = factors.exchange.slice(std::array{
-        field_.material().base_ior, field_.depth(k), field_.wavelengths().albedo[k], fringe_order_of(k, 1)});
+    const std::vector<double> point = exchange_point(k);
+    const NdArray slice = factors.exchange.slice(point);
+    axes_ = {factors.exchange.axes()[point.size()], factors.exchange.axes()[point.size() + 1]};
     exchange_.emplace_back(slice.values().begin(), slice.values().end());
   }
 }

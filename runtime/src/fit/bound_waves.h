@@ -54,6 +54,7 @@ class BoundWaves {
   double fringe_order_of(std::size_t k, double cosine) const;
   double returned(const Factors& factors, std::size_t k) const;
   void take_shares(double cosine, double phi, double coordinate, Direction& w) const;
+  std::vector<double> exchange_point(std::size_t k) const;
   void take_exchange(const Factors& factors);
   void cut_gains(bool is_sum);
   double visits(const Row& i, const Direction& o, std::size_t k) const;

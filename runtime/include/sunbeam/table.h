@@ -105,6 +105,7 @@ struct Table {
   ColorSpace color_space() const;
 
   bool is_factored() const { return !factors.empty(); }
+  bool has_layered_film() const { return schema_version == kTableSchemaVersion; }
 
   const Axis& parameter_axis(std::size_t k) const {
     return is_factored() ? factors.grid[k] : remainder.axes()[k];

@@ -30,11 +30,11 @@ constexpr std::array<const char*, 5> kWarpedArrivalAxes = {"base_ior", "optical_
 constexpr std::array<const char*, 8> kWarpedExchangeAxes = {
     "base_ior", "optical_depth", "albedo", "fringe_order", "warped_cos_i", "phi_i", "warped_cos_o", "phi_o"};
 // Of layered films.
-constexpr std::array<const char*, 3> kFacetCosineAxes = {"theta", "phi", "facet_share"};
+constexpr std::array<const char*, 3> kFacetCosineAxes = {"theta", "phi", "facet_rank"};
 constexpr std::array<const char*, 5> kCrossingAxes = {"base_ior", "optical_depth", "theta", "phi",
-                                                      "facet_share"};
-constexpr std::array<const char*, 1> kReturnCosineAxes = {"facet_share"};
-constexpr std::array<const char*, 2> kReturningAxes = {"optical_depth", "facet_share"};
+                                                      "facet_rank"};
+constexpr std::array<const char*, 1> kReturnCosineAxes = {"facet_rank"};
+constexpr std::array<const char*, 2> kReturningAxes = {"optical_depth", "facet_rank"};
 constexpr std::array<const char*, 9> kLayeredExchangeAxes = {"base_ior",      "optical_depth", "albedo",
                                                              "wavelength_nm", "fringe_order",  "cos_theta_i",
                                                              "phi_i",         "cos_theta_o",   "phi_o"};

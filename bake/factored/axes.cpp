@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "bake/factored/orders/exchange_axes.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/factor_frame.h"
 #include "sunbeam/detail/layered_film.h"
@@ -100,15 +101,22 @@ ArrayShape returned_shape(const Recipe& recipe, const Wavelengths& w) {
                   Precision::single_float);
 }
 
+// What comes before the axes of directions.
+std::vector<Axis> exchange_media(const Recipe& recipe, const Wavelengths& w) {
+  const Axis iors = cubic(recipe.grid[1]), depths = depths_axis(recipe, w);
+  if (!is_layered(recipe.material, w))
+    return {iors, depths, albedos_axis(w), orders_axis(recipe, w, 1, exchange_nodes_per_fringe(w))};
+  const ExchangeAxes axes = exchange_axes(recipe, w, depths.low());
+  return {iors, depths, axes.albedo, axes.wavelength, axes.fringe_order};
+}
+
 ArrayShape exchange_shape(const Recipe& recipe, const Wavelengths& w) {
   if (!has_factored_depths(recipe))
     throw Error(
         fmt::format("{}: key 'grid.absorption_per_nm': found an optical depth of {:.4g} with path product; "
                     "allowed in a factored table: up to {}",
                     recipe.name, depths_axis(recipe, w).high(), kDeepestProduct));
-  const std::vector<Axis> axes{cubic(recipe.grid[1]), depths_axis(recipe, w), albedos_axis(w),
-                               orders_axis(recipe, w, 1, exchange_nodes_per_fringe(w))};
-  const auto with_wi = joined(axes, direction_axes(recipe, "_i"));
+  const auto with_wi = joined(exchange_media(recipe, w), direction_axes(recipe, "_i"));
   return shape_of(recipe, "exchange", joined(with_wi, direction_axes(recipe, "_o")), recipe.table.precision);
 }
 

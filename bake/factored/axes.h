@@ -15,6 +15,9 @@ struct FactorShapes {
   ArrayShape facet_cosine{}, crossing{}, return_cosine{}, returning{};  // of a layered film
 };
 
+// Returns the number of the axis of fringe orders of `exchange`, which two directions follow.
+inline std::size_t order_axis(const ArrayShape& exchange) { return exchange.axes().size() - 5; }
+
 // Says whether the recipe's optical depths are within what a factored table holds.
 bool has_factored_depths(const Recipe& recipe);
 

@@ -7,6 +7,7 @@ namespace sunbeam {
 namespace {
 
 constexpr std::size_t kOrdersPerPart = 32;
+constexpr std::size_t kWavelengthAxis = 3;  // of a layered film
 constexpr std::size_t kArrivalStrata = 64;  // each way
 constexpr std::size_t kNodes = ExchangeSolver::kNodes;
 
@@ -32,37 +33,50 @@ ExchangeWalks::ExchangeWalks(const SharedInputs& bake) : bake_(bake) {
   for (const double depth : axes()[1].nodes) solvers_.emplace_back(depth);
 }
 
-std::size_t ExchangeWalks::parts() const { return (axes()[3].size() + kOrdersPerPart - 1) / kOrdersPerPart; }
+std::size_t ExchangeWalks::parts_of_orders() const {
+  return (orders().size() + kOrdersPerPart - 1) / kOrdersPerPart;
+}
+
+std::size_t ExchangeWalks::parts() const {
+  const std::size_t wavelengths = is_layered(bake_.recipe) ? axes()[kWavelengthAxis].size() : 1;
+  return wavelengths * parts_of_orders();
+}
 
 ExchangeWalks::Orders ExchangeWalks::orders_of(std::size_t part) const {
-  const std::size_t first = part * kOrdersPerPart;
-  return {first, std::min(first + kOrdersPerPart, axes()[3].size())};
+  const std::size_t first = part % parts_of_orders() * kOrdersPerPart;
+  return {first, std::min(first + kOrdersPerPart, orders().size())};
+}
+
+LegFilm ExchangeWalks::film_at(std::size_t ior, std::size_t part) const {
+  const Material material = bake_.material_at(ior);
+  if (!is_layered(bake_.recipe)) return {material};
+  const double nm = axes()[kWavelengthAxis].nodes[wavelength_of(part)];
+  return {material, bake_.recipe.spectrum.monochromatic(bake_.recipe.material, nm)};
 }
 
 // B at (a, b, order).
-std::vector<double> ExchangeWalks::collected_returns(const Material& material, const Axis& orders,
+std::vector<double> ExchangeWalks::collected_returns(const LegFilm& film, const Axis& orders,
                                                      BlockSummary& summary) const {
   const Axis& cosines = ExchangeSolver::cosines();
   const std::size_t row = kNodes * orders.size();
   std::vector<double> sums(kNodes * row);
-  visit_returns(bake_, material, orders, summary,
-                [&](const Leg& leg, const std::vector<double>& reflectance) {
-                  const Bracket from = cosines.locate(leg.from), to = cosines.locate(leg.to);
-                  double* lower = sums.data() + from.lower * row;
-                  double* upper = sums.data() + from.upper * row;
-                  collect(to, leg.weight * (1 - from.upper_weight), reflectance, lower);
-                  collect(to, leg.weight * from.upper_weight, reflectance, upper);
-                });
+  visit_returns(bake_, film, orders, summary, [&](const Leg& leg, const std::vector<double>& reflectance) {
+    const Bracket from = cosines.locate(leg.from), to = cosines.locate(leg.to);
+    double* lower = sums.data() + from.lower * row;
+    double* upper = sums.data() + from.upper * row;
+    collect(to, leg.weight * (1 - from.upper_weight), reflectance, lower);
+    collect(to, leg.weight * from.upper_weight, reflectance, upper);
+  });
   return sums;
 }
 
 // p of every direction at (a, order), not divided by A.
-std::vector<std::vector<double>> ExchangeWalks::collected_arrivals(std::size_t ior, const Axis& orders,
+std::vector<std::vector<double>> ExchangeWalks::collected_arrivals(std::size_t ior, const LegFilm& film,
+                                                                   const Axis& orders,
                                                                    std::uint64_t& count) const {
-  const Material material = bake_.material_at(ior);
   std::vector<std::vector<double>> result;
-  const FilmLegs legs(material);
-  FringePowers powers(ThinFilm::of(material), orders, fringe_order(material, 1));
+  const FilmLegs legs(film.material);
+  FringePowers powers = film.powers(Side::outside, orders);
   for (std::size_t d = 0; d < bake_.direction_count(); ++d) {
     auto& p = result.emplace_back(kNodes * orders.size());
     for (std::size_t r = 0; r < kReplicates; ++r)
@@ -93,14 +107,17 @@ std::vector<ExchangeSolver::Arrived> ExchangeWalks::arrived(std::size_t ior, con
 }
 
 Block ExchangeWalks::run(std::size_t ior, std::size_t part) const {
-  const Material material = bake_.material_at(ior);
-  Axis orders = axes()[3];
-  const auto at = [&](std::size_t k) { return axes()[3].nodes.begin() + static_cast<std::ptrdiff_t>(k); };
+  const LegFilm film = film_at(ior, part);
+  Axis orders = this->orders();
+  const auto at = [&](std::size_t k) {
+    return this->orders().nodes.begin() + static_cast<std::ptrdiff_t>(k);
+  };
   orders.nodes = {at(orders_of(part).first), at(orders_of(part).end)};
   Block block;
-  const auto returns = collected_returns(material, orders, block.summary);
+  const auto returns = collected_returns(film, orders, block.summary);
   std::vector<std::vector<double>> arrivals;
-  if (!passes_straight_on(material)) arrivals = collected_arrivals(ior, orders, block.summary.walks);
+  if (!passes_straight_on(film.material))
+    arrivals = collected_arrivals(ior, film, orders, block.summary.walks);
   const std::vector<double>& albedos = axes()[2].nodes;
   const std::size_t pairs = bake_.direction_count() * bake_.direction_count();
   std::vector<float> values(solvers_.size() * albedos.size() * orders.size() * pairs);
@@ -108,9 +125,9 @@ Block ExchangeWalks::run(std::size_t ior, std::size_t part) const {
   for (std::size_t j = 0; j < orders.size(); ++j) {
     std::ranges::copy(at_order(returns, j, orders.size()), b.row(0));
     for (std::size_t t = 0; t < solvers_.size(); ++t) {
-      const auto ends = arrived(ior, solvers_[t], arrivals, j, orders.size());
+      const auto under = solvers_[t].under(arrived(ior, solvers_[t], arrivals, j, orders.size()), b);
       for (std::size_t k = 0; k < albedos.size(); ++k)
-        solvers_[t].exchange(ends, b, albedos[k],
+        solvers_[t].exchange(under, albedos[k],
                              &values[((t * albedos.size() + k) * orders.size() + j) * pairs]);
     }
   }
@@ -119,14 +136,14 @@ Block ExchangeWalks::run(std::size_t ior, std::size_t part) const {
 }
 
 void ExchangeWalks::add(std::size_t ior, std::size_t part, const std::string& bytes, NdArray& array) const {
-  const Orders orders = orders_of(part);
-  const std::size_t run = orders.size() * array.stride(3);
+  const Orders made = orders_of(part);
+  const std::size_t of_order = array.stride(order_axis(array)), run = made.size() * of_order;
+  const std::size_t first = (wavelength_of(part) * orders().size() + made.first) * of_order;
   const std::size_t outer = array.stride(0) / array.stride(2);  // depths x albedos
   const auto values = unpacked<float>(bytes, outer * run);
   for (std::size_t k = 0; k < outer; ++k)
     for (std::size_t c = 0; c < run; ++c)
-      array.set(ior * array.stride(0) + k * array.stride(2) + orders.first * array.stride(3) + c,
-                Rgb(double{values[k * run + c]}));
+      array.set(ior * array.stride(0) + k * array.stride(2) + first + c, Rgb(double{values[k * run + c]}));
 }
 
 }  // namespace sunbeam

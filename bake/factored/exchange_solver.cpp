@@ -8,6 +8,22 @@ namespace {
 
 constexpr double kLeastArriving = 1e-30, kLeastCosine = 1e-6;
 
+// kd f_i^T B y_o.
+Matrix later_visits(const ExchangeSolver::Under& film, double albedo) {
+  const int count = static_cast<int>(film.ends.size());
+  Matrix again = film.again, result(count);
+  for (int a = 0; a < ExchangeSolver::kNodes; ++a)
+    for (int c = 0; c < ExchangeSolver::kNodes; ++c) again.row(a)[c] *= albedo;
+  const Matrix y = resolvent(std::move(again), film.f);
+  for (int i = 0; i < count; ++i) {
+    Vector sent = film.sent[i];
+    for (double& x : sent) x *= albedo;
+    const Vector row = multiply(sent, y);
+    std::copy(row.begin(), row.end(), result.row(i));
+  }
+  return result;
+}
+
 }  // namespace
 
 const Axis& ExchangeSolver::cosines() {
@@ -36,32 +52,24 @@ ExchangeSolver::Arrived ExchangeSolver::bent(Vector p, double one_visit) const {
   return {std::move(p), std::move(f), 0, one_visit};
 }
 
-// kd f_i^T B y_o.
-Matrix ExchangeSolver::later_visits(std::span<const Arrived> ends, const Matrix& b, double albedo) const {
-  const int count = static_cast<int>(ends.size());
-  Matrix again = multiply(f_, b), first(kNodes, count), result(count);
-  for (int a = 0; a < kNodes; ++a) {
-    for (int c = 0; c < kNodes; ++c) again.row(a)[c] *= albedo;
-    for (int o = 0; o < count; ++o) first.row(a)[o] = ends[o].f[a];
-  }
-  const Matrix y = resolvent(std::move(again), std::move(first));
-  for (int i = 0; i < count; ++i) {
-    Vector sent = multiply(ends[i].f, b);
-    for (double& x : sent) x *= albedo;
-    const Vector row = multiply(sent, y);
-    std::copy(row.begin(), row.end(), result.row(i));
-  }
-  return result;
-}
-
 double ExchangeSolver::first_visit(const Arrived& from, const Arrived& to) const {
   if (!from.p.empty()) return dot(from.f, to.p);
   return one_visit_of_product(optical_depth_, from.below, to.below);
 }
 
-void ExchangeSolver::exchange(std::span<const Arrived> ends, const Matrix& b, double albedo,
-                              float* values) const {
-  Matrix sum = later_visits(ends, b, albedo);
+ExchangeSolver::Under ExchangeSolver::under(std::vector<Arrived> ends, const Matrix& b) const {
+  const int count = static_cast<int>(ends.size());
+  Under film{std::move(ends), {}, multiply(f_, b), Matrix(kNodes, count)};
+  for (int o = 0; o < count; ++o) {
+    film.sent.push_back(multiply(film.ends[o].f, b));
+    for (int a = 0; a < kNodes; ++a) film.f.row(a)[o] = film.ends[o].f[a];
+  }
+  return film;
+}
+
+void ExchangeSolver::exchange(const Under& film, double albedo, float* values) const {
+  Matrix sum = later_visits(film, albedo);
+  const std::vector<Arrived>& ends = film.ends;
   const int count = sum.size();
   for (int i = 0; i < count; ++i)
     for (int o = 0; o < count; ++o) {

@@ -45,12 +45,20 @@ class ExchangeSolver {
   // Takes `p` not yet divided by A(w).
   Arrived bent(Vector p, double one_visit) const;
 
-  // Writes the exchange of all pairs of `ends`, row by row.
-  void exchange(std::span<const Arrived> ends, const Matrix& b, double albedo, float* values) const;
+  // Holds what light along some directions meets under one film, whatever the albedo.
+  struct Under {
+    std::vector<Arrived> ends;
+    std::vector<Vector> sent;  // f B of each
+    Matrix again;              // F B
+    Matrix f;                  // by columns
+  };
+  Under under(std::vector<Arrived> ends, const Matrix& b) const;
+
+  // Writes the exchange of all pairs of ends, row by row.
+  void exchange(const Under& film, double albedo, float* values) const;
 
  private:
   double first_visit(const Arrived& from, const Arrived& to) const;
-  Matrix later_visits(std::span<const Arrived> ends, const Matrix& b, double albedo) const;
 
   double optical_depth_;
   Matrix f_;

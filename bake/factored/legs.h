@@ -7,10 +7,14 @@
 // visible normals.
 #pragma once
 
+#include <optional>
+
+#include "bake/factored/orders/stack_powers.h"
 #include "bake/live/film/geometry.h"
 #include "bake/optics/fringes.h"
 #include "sunbeam/core/rng.h"
 #include "sunbeam/detail/axis.h"
+#include "sunbeam/detail/factors.h"
 
 namespace sunbeam {
 
@@ -78,14 +82,34 @@ class FringePowers {
         film_(film),
         first_(orders.low() / order),
         step_(orders.size() > 1 ? (orders.nodes[1] - orders.nodes[0]) / order : 0) {}
+  FringePowers(StackPowers stack, const Axis& orders)
+      : reflectance(orders.size()), transmittance(orders.size()), stack_(std::move(stack)) {}
 
-  void at(double cosine) { film_fringes(film_, cosine, first_, step_, reflectance, transmittance); }
+  void at(double cosine) {
+    if (stack_)
+      stack_->at(cosine, reflectance, transmittance);
+    else
+      film_fringes(film_, cosine, first_, step_, reflectance, transmittance);
+  }
 
   std::vector<double> reflectance, transmittance;
 
  private:
-  ThinFilm film_;
-  double first_, step_;
+  std::optional<StackPowers> stack_;  // of a layered film
+  ThinFilm film_{};
+  double first_ = 0, step_ = 0;
+};
+
+// The film that legs meet: one clear layer, or a layered film at one wavelength.
+struct LegFilm {
+  Material material;
+  std::optional<Wavelengths> layered{};
+
+  FringePowers powers(Side side, const Axis& orders) const {
+    if (layered) return {StackPowers(material, *layered, side, orders.nodes), orders};
+    const ThinFilm film = side == Side::outside ? ThinFilm::of(material) : ThinFilm::below(material);
+    return {film, orders, fringe_order(material, 1)};
+  }
 };
 
 }  // namespace sunbeam

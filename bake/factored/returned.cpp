@@ -44,14 +44,15 @@ double worst_error(const Replicates& returned, double kd) {
 
 }  // namespace
 
-std::size_t strata_of_returns(const SharedInputs& bake, const Material& material, const FilmLegs& legs,
+std::size_t strata_of_returns(const SharedInputs& bake, const LegFilm& film, const FilmLegs& legs,
                               BlockSummary& summary) {
   const FactorShapes& shapes = bake.shapes;
-  const Axis& orders = bake.has_exchange() ? shapes.exchange.axes()[3] : shapes.returned.axes()[2];
-  FringePowers powers(ThinFilm::below(material), thinned(orders), fringe_order(material, 1));
+  const Axis& orders =
+      bake.has_exchange() ? shapes.exchange.axes()[order_axis(shapes.exchange)] : shapes.returned.axes()[2];
+  FringePowers powers = film.powers(Side::inside, thinned(orders));
   const std::vector<double>& albedos = shapes.wavelengths.albedo;
   const double kd = *std::max_element(albedos.begin(), albedos.end());
-  const Strata range = material.is_smooth() ? kSmoothUpStrata : kUpStrata;
+  const Strata range = film.material.is_smooth() ? kSmoothUpStrata : kUpStrata;
   for (std::size_t up = range.least;; up *= 2) {
     summary.worst_error = worst_error(all_returned(bake, legs, powers, up, summary.walks), kd);
     if (summary.worst_error <= bake.recipe.accuracy.noise || up == range.most) return up;
@@ -64,7 +65,7 @@ Block walk_returned(const SharedInputs& bake, std::size_t ior) {
   const std::size_t orders = axes[2].size();
   std::vector<double> sum(depths.size() * orders);
   Block block;
-  visit_returns(bake, bake.material_at(ior), axes[2], block.summary,
+  visit_returns(bake, LegFilm{bake.material_at(ior)}, axes[2], block.summary,
                 [&](const Leg& leg, const std::vector<double>& reflectance) {
                   for (std::size_t t = 0; t < depths.size(); ++t)
                     add_scaled(leg.weight * std::exp(-depths[t] * (1 / leg.from + 1 / leg.to)),

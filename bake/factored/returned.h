@@ -11,16 +11,16 @@ namespace sunbeam {
 
 // Returns how many strata over the base's cosine the recipe's accuracy.noise asks for. The walks that this
 // took and the noise go to `summary`.
-std::size_t strata_of_returns(const SharedInputs& bake, const Material& material, const FilmLegs& legs,
+std::size_t strata_of_returns(const SharedInputs& bake, const LegFilm& film, const FilmLegs& legs,
                               BlockSummary& summary);
 
 // Calls visit(leg, what the film reflects at each of `orders`) for the returns of all replicates.
 template <class Visit>
-void visit_returns(const SharedInputs& bake, const Material& material, const Axis& orders,
-                   BlockSummary& summary, Visit visit) {
-  const FilmLegs legs(material);
-  FringePowers powers(ThinFilm::below(material), orders, fringe_order(material, 1));
-  const std::size_t up = strata_of_returns(bake, material, legs, summary);
+void visit_returns(const SharedInputs& bake, const LegFilm& film, const Axis& orders, BlockSummary& summary,
+                   Visit visit) {
+  const FilmLegs legs(film.material);
+  FringePowers powers = film.powers(Side::inside, orders);
+  const std::size_t up = strata_of_returns(bake, film, legs, summary);
   for (std::size_t r = 0; r < kReplicates; ++r)
     legs.visit_returns(up, bake.rng_of_returns(r), [&](Leg leg) {
       powers.at(leg.facet_cosine);

@@ -43,7 +43,7 @@ FLOORS = {
         ("bake/base",), ("bake/optics/dispersion",), ("bake/optics",), ("bake/optics/layered",),
         ("bake/live/film",), ("bake/live/walks", "bake/live/exact"), ("bake/live/general",), ("bake/live/adding_doubling",),
         ("bake/live",),
-        ("bake/recipe",), ("bake/blocks",), ("bake/factored/facets",), ("bake/factored", "bake/dense"), ("bake/check",), ("bake/jobs",),
+        ("bake/recipe",), ("bake/blocks",), ("bake/factored/facets", "bake/factored/orders"), ("bake/factored", "bake/dense"), ("bake/check",), ("bake/jobs",),
         ("bake/scene", "bake/compare", "bake/report"), ("bake/cli",)),
     "runtime/src": (
         ("runtime/src/base",), ("runtime/src/files",), ("runtime/src/exr", "runtime/src/film", "runtime/src/vdb"),

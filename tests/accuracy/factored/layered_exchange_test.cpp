@@ -1,0 +1,149 @@
+// Bound look-ups of layered films over pigments with path "product" against single films and the exact
+// evaluator.
+#include "bake/base/error_floor.h"
+#include "bake/check/verify.h"
+#include "bake/live/exact/exact.h"
+#include "tests/accuracy/factored/support.h"
+
+namespace sunbeam {
+namespace {
+
+constexpr const char* kDark = "[0.05, 0.1, 0.2]";
+constexpr const char* kBright = "[0.8, 0.7, 0.5]";
+
+constexpr const char* kMirror =
+    "film_periods = 5\n[[material.film]]\nthickness_nm = 60\nior = 2.4\n"
+    "[[material.film]]\nthickness_nm = 90\nior = 1.46\n";
+constexpr const char* kDispersive =
+    "film_periods = 5\n[[material.film]]\nthickness_nm = 60\nior = {cauchy = [2.2, 5e4]}\n"
+    "[[material.film]]\nthickness_nm = 90\nior = {cauchy = [1.45, 3500]}\n";
+constexpr const char* kAbsorbing =
+    "film_periods = 8\n[[material.film]]\nthickness_nm = 80\nior = 1.56\n"
+    "[[material.film]]\nthickness_nm = 70\nior = 1.7\nextinction = 0.05\n";
+constexpr const char* kEqual =
+    "[[material.film]]\nthickness_nm = 150\nior = 1.56\n[[material.film]]\nthickness_nm = 400\nior = 1.56\n"
+    "[[material.film]]\nthickness_nm = 200\nior = 1.56\n";
+constexpr const char* kSingle = "film_thickness_nm = 750\nfilm_ior = 1.56\n";
+
+struct Surface {
+  std::string film, albedo, roughness, transmission;
+};
+
+Recipe recipe_of(const Surface& surface) {
+  return parse_recipe(
+      "[material]\nabsorption_path = \"product\"\npigment_thickness_nm = 2\nbase_ior = 1.5\ntransmission = "
+      "\"" +
+          surface.transmission + "\"\nroughness = " + surface.roughness + "\nalbedo = " + surface.albedo +
+          "\n" + surface.film +
+          "[grid]\nfilm_thickness_nm = [650.0, 800.0]\nabsorption_per_nm = {from = 0, to = 0.3, count = 4}\n"
+          "[table]\nencoding = \"factored\"\nangles = 12\n",
+      "layered.toml");
+}
+
+Table baked(const Recipe& recipe) { return bake_table(recipe, {.seed = 1, .threads = 0, .on_progress = {}}); }
+
+// Where a look-up is held against another: parameters, the viewer and lights by the cosine.
+struct Point {
+  Parameters parameters;
+  Vec3 wi;
+  std::vector<Vec3> wo;
+};
+
+std::vector<Point> points(const Recipe& recipe) {
+  constexpr int kPoints = 24, kLights = 16;
+  std::vector<Point> result;
+  for (int p = 0; p < kPoints; ++p) {
+    Rng rng(99, p);
+    std::array<double, 3> x;
+    for (std::size_t i = 0; i < 3; ++i)
+      x[i] = lerp(rng.uniform(), recipe.grid[i].low(), recipe.grid[i].high());
+    Point point{{x[0], x[1], x[2]}, direction_from_cosine(lerp(rng.uniform(), 0.0175, 1), 0), {}};
+    for (int o = 0; o < kLights; ++o)
+      point.wo.push_back(
+          direction_from_cosine(std::sqrt((o + rng.uniform()) / kLights), 2 * kPi * rng.uniform()));
+    result.push_back(std::move(point));
+  }
+  return result;
+}
+
+// The error of verify: Int |f - expected| over Int |expected|.
+double error_of(const TableBsdf& bsdf, const Point& point, const std::vector<Rgb>& expected) {
+  double difference = 0, whole = 0;
+  for (std::size_t o = 0; o < expected.size(); ++o) {
+    difference += mean_abs(bsdf.rest(point.wo[o], point.wi) - expected[o]);
+    whole += mean_abs(expected[o]);
+  }
+  const double lights = static_cast<double>(expected.size());
+  return difference / std::max(whole, kDarkestValue * lights);
+}
+
+struct Errors {
+  double median, largest;
+};
+template <class Expected>
+Errors errors(const Recipe& recipe, const Table& table, Expected expected) {
+  std::vector<double> all;
+  for (const Point& point : points(recipe)) {
+    const TableBsdf bsdf(table, point.parameters, OutsideGrid::refuse);
+    all.push_back(error_of(bsdf, point, expected(bsdf.material(), point)));
+  }
+  return {quantile(all, 0.5), quantile(all, 1)};
+}
+
+// Both are walked with the same random numbers; what is left is interpolation over orders and facets.
+TEST(LayeredExchangeOfOneFilm, EqualLayersAreASingleFilm) {
+  for (const std::string roughness : {"0", "0.1"})
+    for (const std::string transmission : {"straight", "refract"}) {
+      const Recipe recipe = recipe_of({kEqual, kBright, roughness, transmission});
+      const Table table = baked(recipe),
+                  single = baked(recipe_of({kSingle, kBright, roughness, transmission}));
+      const Errors found = errors(recipe, table, [&](const Material&, const Point& point) {
+        const TableBsdf bsdf(single, point.parameters, OutsideGrid::refuse);
+        std::vector<Rgb> values;
+        for (const Vec3& wo : point.wo) values.push_back(bsdf.rest(wo, point.wi));
+        return values;
+      });
+      EXPECT_LT(found.median, 1e-3) << roughness << ' ' << transmission;
+      EXPECT_LT(found.largest, 4e-3) << roughness << ' ' << transmission;
+    }
+}
+
+struct Bound {
+  std::string name;
+  Surface surface;
+  double median, largest;
+
+  friend void PrintTo(const Bound& row, std::ostream* out) { *out << row.name; }
+};
+
+std::vector<Bound> bounds() {
+  return {
+      {"mirror_smooth", {kMirror, kBright, "0", "refract"}, 1e-3, 5e-3},
+      {"mirror_straight", {kMirror, kBright, "0.1", "straight"}, 1e-3, 5e-3},
+      {"mirror_rough", {kMirror, kBright, "0.3", "refract"}, 1e-3, 5e-3},
+      {"mirror_dark", {kMirror, kDark, "0.1", "refract"}, 1e-3, 5e-3},
+      {"dispersive_smooth", {kDispersive, kDark, "0", "straight"}, 1e-3, 5e-3},
+      {"dispersive_rough", {kDispersive, kBright, "0.1", "refract"}, 1e-3, 5e-3},
+      {"absorbing_smooth", {kAbsorbing, kBright, "0", "refract"}, 1e-3, 5e-3},
+      {"absorbing_rough", {kAbsorbing, kBright, "0.3", "straight"}, 1e-3, 5e-3},
+  };
+}
+
+class LayeredExchange : public ::testing::TestWithParam<Bound> {};
+
+// Neither side has noise but the bake's own: no false alarm, the same figures for every thread count.
+TEST_P(LayeredExchange, AgreesWithTheExactEvaluator) {
+  const Bound& row = GetParam();
+  const Recipe recipe = recipe_of(row.surface);
+  const Errors found = errors(recipe, baked(recipe), [&](const Material& material, const Point& point) {
+    return ExactRest(material, recipe.spectrum.wavelengths(material)).rest(point.wo, point.wi);
+  });
+  EXPECT_LT(found.median, row.median);
+  EXPECT_LT(found.largest, row.largest);
+}
+
+INSTANTIATE_TEST_SUITE_P(Films, LayeredExchange, ::testing::ValuesIn(bounds()),
+                         [](const auto& row) { return row.param.name; });
+
+}  // namespace
+}  // namespace sunbeam

@@ -47,7 +47,7 @@ FLOORS = {
         ("bake/scene", "bake/compare", "bake/report"), ("bake/cli",)),
     "runtime/src": (
         ("runtime/src/base",), ("runtime/src/files",), ("runtime/src/exr", "runtime/src/film", "runtime/src/vdb"),
-        ("runtime/src/table",), ("runtime/src/sampling",), ("runtime/src/rest",), ("runtime/src/layers",), ("runtime/src/fit",), ("runtime/src/lookup",)),
+        ("runtime/src/table",), ("runtime/src/sampling",), ("runtime/src/rest",), ("runtime/src/layers",), ("runtime/src/fit",), ("runtime/src/textured",), ("runtime/src/lookup",)),
 }
 LARGEST_ROOM = 16  # files
 MAY_BE_LARGER = {"bake/cli", "bake/report"}  # a file a subcommand, a file a chart

@@ -9,13 +9,20 @@
 #include "runtime/src/lookup/textured_rest.h"
 #include "runtime/src/rest/dense_rest.h"
 #include "runtime/src/sampling/facets.h"
+#include "runtime/src/textured/layered_rest.h"
+#include "sunbeam/detail/layered_film.h"
 #include "sunbeam/textured_table.h"
 
 namespace sunbeam {
 inline namespace v1 {
 
-// The kinds are: factored, isotropic and of path "sum"; any other factored one; dense.
-enum class TexturedKind { plain, general, dense };
+// The kinds are: factored, isotropic and of path "sum"; any other factored one; factored with a layered film;
+// dense.
+enum class TexturedKind { plain, general, layered, dense };
+
+inline bool is_layered(const Table& table) {
+  return table.is_factored() && is_layered(table.material, table.factors.wavelengths);
+}
 
 // Says where a direction lies among the nodes of L, and holds its closed forms.
 struct TexturedEnd {
@@ -39,24 +46,37 @@ struct TexturedEnd {
 struct TexturedData {
   TexturedData(const Table& table, Arithmetic arithmetic)
       : material(table.material),
-        film(table.material,
-             table.is_factored() && FactorFrame(table.material, reaches_below(table)).is_warped()),
+        film(table.material, table.is_factored() && !is_layered(table) &&
+                                 FactorFrame(table.material, reaches_below(table)).is_warped()),
         facets(table.material.roughness),
         smooth(table.material.is_smooth()) {
-    if (table.is_factored()) {
+    if (is_layered(table)) {
+      layered.emplace(table);
+    } else if (table.is_factored()) {
       rest.emplace(table, arithmetic);
     } else {
       dense.emplace(table);
       albedos.emplace(table);
     }
-    kind = !rest ? TexturedKind::dense : rest->is_plain() ? TexturedKind::plain : TexturedKind::general;
+    kind = layered            ? TexturedKind::layered
+           : dense            ? TexturedKind::dense
+           : rest->is_plain() ? TexturedKind::plain
+                              : TexturedKind::general;
   }
 
   const EvenAxis& axis(std::size_t k) const {
+    if (kind == TexturedKind::layered) return layered->axis(k);
     return kind == TexturedKind::dense ? albedos->axis(k) : rest->axis(k);
+  }
+  // Says whether `rest` is there.
+  bool has_logs() const { return kind == TexturedKind::plain || kind == TexturedKind::general; }
+  std::size_t bytes() const {
+    if (layered) return layered->bytes();
+    return rest ? rest->bytes() : dense->bytes() + albedos->bytes();
   }
   // Returns the mean absorption of the pigment relative to the parameter, as far as the rest decays with it.
   float mean_absorption() const {
+    if (kind == TexturedKind::layered) return layered->absorption()[3];
     if (kind != TexturedKind::dense) return rest->media().absorption[3];
     return material.scatters() || material.has_multiple_facets() ? 0 : 1;
   }
@@ -78,11 +98,16 @@ struct TexturedData {
     const Color4 factor = exp4(rest->at(taps, o.at, end_o.phi) + rest->at(taps, i.at, end_i.phi) -
                                (pigment.optical_depth * paths) * rest->media().absorption);
     if (!rest->is_product()) return factor;
+    return factor *
+           (one_visit(pigment, rest->media().absorption, wo, wi) + rest->exchange(parameters, end_o, end_i));
+  }
+
+  // Returns V1.
+  static Color4 one_visit(const PigmentCosines& pigment, const Color4& absorption, const Vec3& wo,
+                          const Vec3& wi) {
     const float beyond_o = 1 / pigment.cosine_below(static_cast<float>(wo.z)) - 1,
                 beyond_i = 1 / pigment.cosine_below(static_cast<float>(wi.z)) - 1;
-    const Color4 one_visit =
-        exp4((pigment.optical_depth * (1 - beyond_o * beyond_i)) * rest->media().absorption);
-    return factor * (one_visit + rest->exchange(parameters, end_o, end_i));
+    return exp4((pigment.optical_depth * (1 - beyond_o * beyond_i)) * absorption);
   }
 
   // Returns the azimuth folded into a quadrant, over pi/2; it is of no matter for an isotropic film.
@@ -93,8 +118,9 @@ struct TexturedData {
 
   TexturedKind kind;
   Material material;
-  std::optional<TexturedRest> rest;  // of a factored table
-  std::optional<DenseRest> dense;    // or of a dense one
+  std::optional<TexturedRest> rest;    // of a factored table,
+  std::optional<LayeredRest> layered;  // of one with a layered film
+  std::optional<DenseRest> dense;      // or of a dense one
   std::optional<DenseAlbedos> albedos;
   FilmCosines film;
   Facets facets;
@@ -177,6 +203,58 @@ class TexturedLookup {
 
   const TexturedTable::At& at_;
   const TexturedData& data_;
+};
+
+template <>
+class TexturedLookup<TexturedKind::layered> {
+ public:
+  explicit TexturedLookup(const TexturedTable::At& at)
+      : at_(at), data_(*at.data_), point_(data_.layered->point(at.parameters_)) {}
+
+  struct Viewer {
+    Viewer(const TexturedLookup& lookup, const Vec3& wo)
+        : facets(lookup.data_.facets, wo), end(lookup.end(wo, facets.cosine, facets.root)) {
+      const LayeredRest& layered = *lookup.data_.layered;
+      first_chance = layered.first_chance(lookup.point_, end);
+      if (layered.has_rest()) factor = layered.factor(lookup.point_, end);
+    }
+    FacetViewer facets;
+    LayeredRest::End end;
+    Color4 factor{};  // B
+    float first_chance;
+  };
+
+  Rgb mirror_reflectance(const Vec3& wo) const { return to_rgb(film_at(static_cast<float>(wo.z))); }
+
+  EvalPdf eval_pdf(const Viewer& viewer, const Vec3& wo, const Vec3& wi) const {
+    const FacetPair pair(data_.facets, viewer.facets, wo, wi);
+    const float chance = viewer.first_chance, rest_pdf = (1 - chance) * at_.rest_density_.pdf(pair.cosine);
+    const Color4 rest =
+        data_.layered->has_rest() ? this->rest(viewer, end(wi, pair.cosine, pair.root), wo, wi) : Color4{};
+    if (data_.smooth) return {to_rgb(rest), double{rest_pdf}};
+    return {to_rgb(rest + pair.lobe * film_at(pair.half_cosine)), double{rest_pdf + chance * pair.pdf}};
+  }
+
+  double albedo(const Viewer& viewer) const {
+    const Color4 first = film_at(std::sqrt(data_.film.film_cosine_squared(viewer.facets.cosine)));
+    return double{first[0] + first[1] + first[2]} / 3 / double{viewer.first_chance};
+  }
+
+ private:
+  LayeredRest::End end(const Vec3& w, float cosine, float root) const {
+    return {cosine, root, 1 / std::sqrt(at_.pigment_.pigment_cosine_squared(cosine)), data_.quadrant(w)};
+  }
+  Color4 film_at(float cosine) const { return data_.layered->reflectance(point_, std::min(cosine, 1.0f)); }
+  Color4 rest(const Viewer& viewer, const LayeredRest::End& i, const Vec3& wo, const Vec3& wi) const {
+    const LayeredRest& layered = *data_.layered;
+    Color4 bracket = layered.exchange(point_, viewer.end, i);
+    if (layered.is_product()) bracket += TexturedData::one_visit(at_.pigment_, layered.absorption(), wo, wi);
+    return viewer.factor * layered.factor(point_, i) * bracket;
+  }
+
+  const TexturedTable::At& at_;
+  const TexturedData& data_;
+  LayeredRest::Point point_;
 };
 
 template <>

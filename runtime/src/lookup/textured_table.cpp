@@ -21,9 +21,7 @@ float rest_exponent(const PigmentCosines& pigment, float absorption) {
 TexturedTable::TexturedTable(const Table& table, Arithmetic arithmetic)
     : data_(std::make_shared<TexturedData>(table, arithmetic)) {}
 
-std::size_t TexturedTable::bytes() const {
-  return data_->rest ? data_->rest->bytes() : data_->dense->bytes() + data_->albedos->bytes();
-}
+std::size_t TexturedTable::bytes() const { return data_->bytes(); }
 
 TexturedTable::At TexturedTable::at(const Parameters& p) const noexcept {
   const TexturedData& data = *data_;
@@ -46,7 +44,7 @@ TexturedTable::At TexturedTable::at(const Parameters& parameters, OutsideGrid ou
 TexturedTable::At::At(const TexturedData& data, const Parameters& parameters)
     : data_(&data),
       parameters_(parameters),
-      taps_(data.kind == TexturedKind::dense ? ParameterTaps{} : data.rest->parameter_taps(parameters)),
+      taps_(data.has_logs() ? data.rest->parameter_taps(parameters) : ParameterTaps{}),
       pigment_(data.film, parameters.base_ior, parameters.absorption_per_nm * data.film.pigment_thickness_nm),
       rest_density_(rest_exponent(pigment_, data.mean_absorption())) {}
 
@@ -58,6 +56,7 @@ SUNBEAM_ALWAYS_INLINE auto TexturedTable::At::with_lookup(const Vec3& wo, Call c
   };
   if (data_->kind == TexturedKind::plain) return with(TexturedLookup<TexturedKind::plain>(*this));
   if (data_->kind == TexturedKind::general) return with(TexturedLookup<TexturedKind::general>(*this));
+  if (data_->kind == TexturedKind::layered) return with(TexturedLookup<TexturedKind::layered>(*this));
   return with(TexturedLookup<TexturedKind::dense>(*this));
 }
 

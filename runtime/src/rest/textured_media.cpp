@@ -2,9 +2,7 @@
 
 namespace sunbeam {
 inline namespace v1 {
-namespace {
 
-// The weighted mean of the pigment's spectrum in each channel, and over channels.
 Color4 mean_absorption(const Wavelengths& w) {
   Rgb sum, total;
   for (std::size_t k = 0; k < w.size(); ++k) {
@@ -17,8 +15,6 @@ Color4 mean_absorption(const Wavelengths& w) {
   lanes[3] = static_cast<float>(mean(result));
   return lanes;
 }
-
-}  // namespace
 
 TexturedMedia::TexturedMedia(const Table& table, Arithmetic arithmetic)
     : film(table.factors.wavelengths, table.material.exterior_ior, table.material.film_ior,

@@ -11,6 +11,9 @@
 namespace sunbeam {
 inline namespace v1 {
 
+// Returns a: the weighted mean of the pigment's spectrum in each channel, and their mean.
+Color4 mean_absorption(const Wavelengths& wavelengths);
+
 struct TexturedMedia {
   TexturedMedia(const Table& table, Arithmetic arithmetic);
 

@@ -1,0 +1,159 @@
+#include "runtime/src/textured/layered_grid.h"
+
+#include <cmath>
+
+#include "runtime/src/base/color4.h"
+#include "runtime/src/textured/resolved_axis.h"
+#include "sunbeam/core/error.h"
+#include "sunbeam/core/read_limit.h"
+#include "sunbeam/detail/layered_film.h"
+#include "sunbeam/detail/text.h"
+
+namespace sunbeam {
+inline namespace v1 {
+namespace {
+
+constexpr int kMostCosines = 257, kLeastCosines = 33;
+constexpr int kPhis = 7, kPhiStep = 3;  // of an anisotropic film
+constexpr std::size_t kAbsorptions = 12;
+constexpr int kThicknesses = 8, kMostThicknesses = 512;  // intervals
+constexpr int kBaseIors = 4, kMostBaseIors = 16;
+constexpr double kPerFringe = 2;        // intervals to begin with, of the shortest wavelength
+constexpr double kMostError = 3e-3;     // between nodes, of what the film reflects and lets through
+constexpr double kMostFilmBytes = 8e6;  // of R, and of P
+constexpr double kMostPairBytes = 40e6;
+constexpr double kMostWork = 3e7;  // points times wavelengths times layers: some minutes
+
+std::size_t layers_of(const Wavelengths& w) {
+  const std::size_t of_period = w.layers.empty() ? 1 : w.layers.front().size();
+  return of_period * static_cast<std::size_t>(std::max(w.film_periods, 1));
+}
+
+// What one evaluation of the film costs, against one of a single layer at one wavelength.
+double work_of(const Table& table) {
+  constexpr double kPlatelets = 30;
+  const Wavelengths& w = table.factors.wavelengths;
+  return static_cast<double>(w.size() * layers_of(w)) *
+         (table.material.thickness_spread > 0 ? kPlatelets : 1);
+}
+
+void require_reasonable_work(double points, const Table& table) {
+  if (points * work_of(table) <= kMostWork) return;
+  throw Error("textured look-ups of films of " + std::to_string(layers_of(table.factors.wavelengths)) +
+              " layers up to " + to_text(table.factors.grid[0].high()) + " nm take the film at " +
+              to_text(points) + " thicknesses and base IORs; allowed: up to " +
+              to_text(std::floor(kMostWork / work_of(table))));
+}
+
+// What the film reflects and lets through at some directions, folded: three numbers a direction of the first,
+// then of the second.
+Sampled film_at(const Table& table, double thickness_nm, double base_ior) {
+  const Wavelengths& w = table.factors.wavelengths;
+  Material material = table.material;
+  material.film_thickness_nm = thickness_nm;
+  material.base_ior = base_ior;
+  const StackSpectrum film = stack_spectrum(material, w);
+  Sampled reflected, passing;
+  for (const double cosine : {0.15, 0.4, 0.65, 0.85, 1.0}) {
+    std::array<double, kMostWavelengths> above, through, below;
+    film.powers(material.exterior_ior, cosine, above.data(), through.data(), below.data());
+    const Rgb r = w.fold(std::span(above).first(w.size())), t = w.fold(std::span(through).first(w.size()));
+    reflected.insert(reflected.end(), {r.r, r.g, r.b});
+    passing.insert(passing.end(), {t.r, t.g, t.b});
+  }
+  reflected.insert(reflected.end(), passing.begin(), passing.end());
+  return reflected;
+}
+
+// The difference of sums over the values of one quantity, relative.
+double error_of(const Sampled& expected, const Sampled& found, std::size_t first, double floor) {
+  double difference = 0, sum = 0;
+  for (std::size_t k = first; k < first + expected.size() / 2; ++k) {
+    difference += std::abs(expected[k] - found[k]);
+    sum += std::abs(expected[k]);
+  }
+  return difference / std::max(sum, floor * static_cast<double>(expected.size() / 2));
+}
+double film_error(const Sampled& expected, const Sampled& found) {
+  constexpr double kFaintReflection = 0.05, kFaintPassing = 0.005;
+  return std::max(error_of(expected, found, 0, kFaintReflection),
+                  error_of(expected, found, expected.size() / 2, kFaintPassing));
+}
+
+int first_thicknesses(const Table& table) {
+  const Wavelengths& w = table.factors.wavelengths;
+  const Axis& axis = table.factors.grid[0];
+  double fringes = 0;
+  for (std::size_t k = 0; k < w.size(); ++k)
+    fringes =
+        std::max(fringes, (axis.high() - axis.low()) * path_per_thickness(table.material, w, k) / w.nm[k]);
+  require_reasonable_work(kPerFringe * fringes, table);
+  return std::max(kThicknesses, static_cast<int>(std::ceil(kPerFringe * fringes)));
+}
+
+Axis thickness_axis(const Table& table) {
+  const Axis& base_ior = table.factors.grid[1];
+  const int first = first_thicknesses(table);
+  return resolved_axis(
+      table.factors.grid[0], first, std::max(first, kMostThicknesses), kMostError,
+      [&](double nm) { return film_at(table, nm, base_ior.low()); }, film_error);
+}
+
+Axis base_ior_axis(const Table& table) {
+  const Axis& thickness = table.factors.grid[0];
+  return resolved_axis(
+      table.factors.grid[1], kBaseIors, kMostBaseIors, kMostError,
+      [&](double base_ior) { return film_at(table, thickness.high(), base_ior); }, film_error);
+}
+
+Axis absorption_axis(const Table& table) {
+  Axis axis = table.factors.grid[2];
+  axis.is_cubic = false;
+  if (axis.size() > 1) axis.nodes = spaced_nodes(axis, axis.low(), axis.high(), kAbsorptions);
+  return axis;
+}
+
+std::array<EvenAxis, 3> limits_of(const std::vector<Axis>& grid) {
+  return {EvenAxis(grid[0], 2), EvenAxis(grid[1], 2), EvenAxis(grid[2], 2)};
+}
+
+double bytes_of(std::size_t cells) { return static_cast<double>(cells) * sizeof(Color4); }
+
+}  // namespace
+
+LayeredGrid::LayeredGrid(const Table& table)
+    : axes{thickness_axis(table), base_ior_axis(table), absorption_axis(table)},
+      limits(limits_of(table.factors.grid)),
+      has_rest(!table.material.is_opaque()),
+      is_product(has_rest && !table.factors.exchange.empty()),
+      cosines(kMostCosines),
+      phis(table.symmetry == Symmetry::isotropic ? 1 : kPhis) {
+  require_reasonable_work(points(), table);
+  fit_memory();
+}
+
+// Takes fewer directions where parameters take the room.
+void LayeredGrid::fit_memory() {
+  while (cosines > kLeastCosines && bytes_of(std::max(film_cells(), share_cells())) > kMostFilmBytes)
+    cosines = (cosines - 1) / 2 + 1;
+  if (phis > 1) phi_step = kPhiStep;
+  for (const int step : {1, 2, 3, 4}) {
+    root_step = step;
+    if (bytes_of(pair_cells()) <= kMostPairBytes) break;
+  }
+  const double bytes = bytes_of(film_cells() + share_cells() + log_cells() + pair_cells()),
+               most = static_cast<double>(4 * read_limit(0));
+  if (bytes > most)
+    throw Error("textured look-ups of films up to " + to_text(axes[0].high()) + " nm take " +
+                to_text(std::ceil(bytes / 1e6)) + " MB of memory; allowed: up to " + to_text(most / 1e6) +
+                " MB");
+}
+
+Parameters LayeredGrid::parameters(int point, int absorption) const {
+  const std::size_t iors = axes[1].size(), k = static_cast<std::size_t>(point);
+  return {axes[0].nodes[k / iors], axes[1].nodes[k % iors],
+          axes[2].nodes[static_cast<std::size_t>(absorption)]};
+}
+
+}  // namespace v1
+}  // namespace sunbeam

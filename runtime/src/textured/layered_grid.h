@@ -1,0 +1,55 @@
+// This file says where the nodes of a textured table's arrays lie if its film is layered
+// (sunbeam/textured_table.h). layered_fit.h makes the arrays, layered_rest.h looks them up.
+#pragma once
+
+#include "runtime/src/base/even_axis.h"
+#include "sunbeam/table.h"
+
+namespace sunbeam {
+inline namespace v1 {
+
+struct LayeredGrid {
+  // Chooses the nodes. Throws Error if the arrays would take too much memory, or too long to make.
+  explicit LayeredGrid(const Table& table);
+
+  // Nodes of film_thickness_nm and base_ior are points, the second running fastest.
+  int points() const { return static_cast<int>(axes[0].size() * axes[1].size()); }
+  int absorptions() const { return static_cast<int>(axes[2].size()); }
+  Parameters parameters(int point, int absorption) const;
+
+  // R is (point, cosine), P is (point, azimuth, cosine); cosines are even.
+  double cosine(int c) const { return static_cast<double>(c) / (cosines - 1); }
+  double phi(int p) const { return phis == 1 ? 0 : kPi / 2 * p / (phis - 1); }
+  std::size_t film_cells() const { return count(points(), cosines); }
+  std::size_t share_cells() const { return has_rest ? count(points(), phis, cosines) : 0; }
+
+  // L is (point, absorption, azimuth, root of the cosine); roots are even.
+  static constexpr int kRoots = 25;
+  static double root(int r) { return static_cast<double>(r) / (kRoots - 1); }
+  int columns() const { return phis * kRoots; }
+  std::size_t log_cells() const { return has_rest ? count(points(), absorptions(), columns()) : 0; }
+
+  // X is (point, absorption, end, end). Ends are some of the columns of L, as (azimuth, root).
+  int pair_roots() const { return (kRoots - 1) / root_step + 1; }
+  int pair_phis() const { return (phis - 1) / phi_step + 1; }
+  int ends() const { return pair_phis() * pair_roots(); }
+  int column_of_end(int end) const {
+    return end / pair_roots() * phi_step * kRoots + end % pair_roots() * root_step;
+  }
+  std::size_t pair_cells() const { return has_rest ? count(points(), absorptions(), ends() * ends()) : 0; }
+
+  std::array<Axis, 3> axes;        // nodes of the parameters; the first two are cubic
+  std::array<EvenAxis, 3> limits;  // their ranges
+  bool has_rest, is_product;       // nothing lies below the film on an opaque base
+  int cosines, phis;               // even azimuths in a quadrant; 1 for an isotropic film
+  int root_step = 1, phi_step = 1;
+
+ private:
+  static std::size_t count(int a, int b, int c = 1) {
+    return static_cast<std::size_t>(a) * static_cast<std::size_t>(b) * static_cast<std::size_t>(c);
+  }
+  void fit_memory();
+};
+
+}  // namespace v1
+}  // namespace sunbeam

@@ -1,0 +1,68 @@
+// This file looks up a textured table whose film is layered: the arrays R, P, L and X of
+// sunbeam/textured_table.h, which layered_arrays.h makes.
+#pragma once
+
+#include <array>
+
+#include "runtime/src/base/bound_axis.h"
+#include "runtime/src/textured/layered_arrays.h"
+
+namespace sunbeam {
+inline namespace v1 {
+
+class LayeredRest {
+ public:
+  explicit LayeredRest(const Table& table);
+
+  // Says where parameters lie among the nodes.
+  struct Point {
+    int count;  // of the neighbours in thickness and base IOR
+    std::array<int, 16> node;
+    std::array<float, 16> weight;
+    int absorption;                   // the lower neighbour,
+    float upper_absorption;           // and the weight of the upper one
+    int nearest, nearest_absorption;  // neighbour
+    float beyond;                     // the optical depth above the least of the grid
+  };
+  Point point(const Parameters& at) const;
+
+  // Describes a direction; `phi` is the azimuth folded into a quadrant, over pi/2.
+  struct End {
+    float cosine, root, per_pigment_cosine, phi;
+  };
+
+  // Returns R of a cosine.
+  Color4 reflectance(const Point& at, float cosine) const;
+  // Returns B.
+  Color4 factor(const Point& at, const End& w) const;
+  // Returns X.
+  Color4 exchange(const Point& at, const End& o, const End& i) const;
+  // Returns the chance of sampling the first surface, from the nearest parameters.
+  float first_chance(const Point& at, const End& w) const;
+
+  bool has_rest() const { return grid_.has_rest; }
+  bool is_product() const { return grid_.is_product; }
+  const Color4& absorption() const { return absorption_; }
+  const EvenAxis& axis(std::size_t k) const { return grid_.limits[k]; }
+  std::size_t bytes() const { return arrays_.bytes(); }
+
+ private:
+  struct PairTaps {
+    std::array<int, 4> node;
+    std::array<float, 4> weight;
+    int count;
+  };
+  PairTaps taps(const End& end) const;
+  Color4 share(const Point& at, const End& w) const;
+  Color4 log(const Point& at, const End& w) const;
+
+  LayeredGrid grid_;
+  Color4 absorption_;  // a of each channel, and their mean
+  double pigment_thickness_nm_;
+  BoundAxis thickness_, base_ior_, absorptions_;
+  Color4 least_;  // of R: folded colours may be negative
+  LayeredArrays arrays_;
+};
+
+}  // namespace v1
+}  // namespace sunbeam

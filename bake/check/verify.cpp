@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <memory>
 #include <optional>
 
 #include "bake/base/parallel_tasks.h"
@@ -81,51 +82,89 @@ double energy_of(const Rgb& albedo, const Wavelengths& wavelengths, ColorSpace s
   return std::max(max_component(albedo / most), luminance(albedo, space));
 }
 
+// What is prepared of table and live model at one parameter point.
+struct Prepared {
+  // What a table states of itself must not depend on the processor.
+  Prepared(const Table& table, const Parameters& parameters, const Spectrum& spectrum, Estimator truth)
+      : bsdf(table, parameters, OutsideGrid::refuse, Arithmetic::reproducible),
+        wavelengths(spectrum.wavelengths(bsdf.material())),
+        model(bsdf.material(), wavelengths) {
+    if (truth == Estimator::exact && !bsdf.material().scatters()) exact.emplace(bsdf.material(), wavelengths);
+  }
+
+  TableBsdf bsdf;
+  Wavelengths wavelengths;
+  Pfmc model;
+  std::optional<ExactRest> exact;
+};
+
+// What all points of a table share.
+struct SharedChecks {
+  SharedChecks(const TableView& table, const VerifySettings& settings)
+      : table(table),
+        settings(settings),
+        spectrum(parse_stored_recipe(table.head().info.at("recipe"), "recipe of the table").spectrum) {
+    if (!table.is_in_memory()) return;
+    textured.emplace(table.head(), Arithmetic::reproducible);
+    for (std::size_t k = 0; k < kParameterNames.size(); ++k)
+      if (table.parameter_axis(k).size() > 1) return;
+    prepared =
+        std::make_shared<Prepared>(table.head(),
+                                   Parameters{table.parameter_axis(0).low(), table.parameter_axis(1).low(),
+                                              table.parameter_axis(2).low()},
+                                   spectrum, settings.truth);
+  }
+
+  const TableView& table;
+  const VerifySettings& settings;
+  Spectrum spectrum;
+  std::optional<TexturedTable> textured;     // of a table in memory
+  std::shared_ptr<const Prepared> prepared;  // of one that holds a single parameter point
+};
+
 class PointCheck {
  public:
-  // `textured` is that of `table`, if that is in memory.
-  PointCheck(const TableView& table, const std::optional<TexturedTable>& textured, const Spectrum& spectrum,
-             const VerifySettings& settings, std::uint64_t index)
-      : settings_(settings),
-        rng_(settings.seed, index),
-        color_space_(spectrum.color_space()),
-        textured_(textured) {
+  PointCheck(const SharedChecks& shared, std::uint64_t index)
+      : settings_(shared.settings),
+        rng_(shared.settings.seed, index),
+        color_space_(shared.spectrum.color_space()),
+        textured_(shared.textured),
+        prepared_(shared.prepared) {
+    const TableView& table = shared.table;
     point_.parameters = {draw(table.parameter_axis(0), rng_), draw(table.parameter_axis(1), rng_),
                          draw(table.parameter_axis(2), rng_)};
     point_.cos_i = lerp(rng_.uniform(), std::cos(89 * kPi / 180), 1);
     if (table.head().symmetry == Symmetry::anisotropic) point_.phi_i = 2 * kPi * rng_.uniform();
     wi_ = direction_from_cosine(point_.cos_i, point_.phi_i);
     std::optional<Table> room;
-    bind(table.around(point_.parameters, room));
-    wavelengths_ = spectrum.wavelengths(bsdf_->material());
-    model_.emplace(bsdf_->material(), wavelengths_);
+    if (!prepared_) prepare(table.around(point_.parameters, room), shared.spectrum);
   }
 
   VerifyPoint run() {
-    directions_ = draw_directions(*bsdf_, wi_, rng_);
+    directions_ = draw_directions(bsdf(), wi_, rng_);
     measure_errors(settings_.truth == Estimator::exact ? exact_rest() : walked_rest());
     point_.dirac_error =
-        max_component(transform(bsdf_->film_reflectance(wi_.z) - model_->film_reflectance(wi_.z),
+        max_component(transform(bsdf().film_reflectance(wi_.z) - prepared_->model.film_reflectance(wi_.z),
                                 [](double x) { return std::abs(x); }));
-    const Rgb albedo = bsdf_->albedo(wi_);
+    const Rgb albedo = bsdf().albedo(wi_);
     point_.albedo = max_component(albedo);
-    point_.energy = energy_of(albedo, wavelengths_, color_space_);
+    point_.energy = energy_of(albedo, prepared_->wavelengths, color_space_);
     return point_;
   }
 
  private:
-  // What a table states of itself must not depend on the processor.
-  void bind(const Table& table) {
-    bsdf_.emplace(table, point_.parameters, OutsideGrid::refuse, Arithmetic::reproducible);
+  void prepare(const Table& table, const Spectrum& spectrum) {
+    prepared_ = std::make_shared<Prepared>(table, point_.parameters, spectrum, settings_.truth);
     if (!textured_) textured_.emplace(table, Arithmetic::reproducible);
   }
+  const TableBsdf& bsdf() const { return prepared_->bsdf; }
 
   // The number of walks follows the floor that a pilot expects, not that of the runs themselves: stopping at
   // runs that happen to agree would report one that is too low.
   std::vector<Rgb> walked_rest() {
     const int estimates = estimates_needed();
     const auto walk = [&](int count) {
-      return walk_rest(*model_, technique_of(settings_.truth), wi_, directions_.wo, count, rng_);
+      return walk_rest(prepared_->model, technique_of(settings_.truth), wi_, directions_.wo, count, rng_);
     };
     const std::vector<Rgb> live = walk(estimates).value;
     auto difference = walk(estimates).value;
@@ -138,7 +177,7 @@ class PointCheck {
     const double most = kMostEstimates * square(0.01 / settings_.tolerance_median);
     for (int pilot = kFirstPilot;; pilot *= 2) {
       const WalkedRest rest =
-          walk_rest(*model_, technique_of(settings_.truth), wi_, directions_.wo, pilot, rng_);
+          walk_rest(prepared_->model, technique_of(settings_.truth), wi_, directions_.wo, pilot, rng_);
       const double floor = weighted(rest.expected_difference) / denominator(rest.value);
       const double needed = pilot * square(floor / (kFloorMargin * settings_.tolerance_median / 3));
       const double reach = std::min<double>(kPilotReach * pilot, most);
@@ -148,17 +187,18 @@ class PointCheck {
   }
 
   std::vector<Rgb> exact_rest() const {
-    if (bsdf_->material().scatters()) return solved_rest();
-    return ExactRest(bsdf_->material(), wavelengths_).rest(directions_.wo, wi_);
+    if (!prepared_->exact) return solved_rest();
+    return prepared_->exact->rest(directions_.wo, wi_);
   }
 
   std::vector<Rgb> solved_rest() const {
     std::vector<double> cosines{wi_.z};
     for (const Vec3& wo : directions_.wo) cosines.push_back(wo.z);
-    SlabSolver solver(bsdf_->material(), cosines);
-    const double depth = bsdf_->material().optical_depth();
-    for (const double relative : wavelengths_.absorption) solver.add_depth(depth * relative);
-    const auto rest = SlabSolver::Film(solver, point_.parameters.film_thickness_nm, wavelengths_).rest(depth);
+    SlabSolver solver(bsdf().material(), cosines);
+    const double depth = bsdf().material().optical_depth();
+    for (const double relative : prepared_->wavelengths.absorption) solver.add_depth(depth * relative);
+    const auto rest =
+        SlabSolver::Film(solver, point_.parameters.film_thickness_nm, prepared_->wavelengths).rest(depth);
     std::vector<Rgb> live;
     for (std::size_t k = 0; k < directions_.wo.size(); ++k)
       live.push_back(rest.at(k + 1, 0, azimuth(directions_.wo[k]) - point_.phi_i));
@@ -175,7 +215,7 @@ class PointCheck {
   double denominator(const std::vector<Rgb>& live) const {
     double total = 0;
     for (std::size_t k = 0; k < live.size(); ++k)
-      total += directions_.weight[k] * mean_abs(model_->first(directions_.wo[k], wi_) + live[k]);
+      total += directions_.weight[k] * mean_abs(prepared_->model.first(directions_.wo[k], wi_) + live[k]);
     return std::max(total, kDarkestAlbedo);
   }
 
@@ -185,10 +225,10 @@ class PointCheck {
     for (std::size_t k = 0; k < live.size(); ++k) {
       const Vec3& wo = directions_.wo[k];
       const double weight = directions_.weight[k];
-      const Rgb f = model_->first(wo, wi_) + live[k];
-      bound_sum += weight * mean_abs(bsdf_->eval_pdf(wo, wi_).f - f);
+      const Rgb f = prepared_->model.first(wo, wi_) + live[k];
+      bound_sum += weight * mean_abs(bsdf().eval_pdf(wo, wi_).f - f);
       textured_sum += weight * mean_abs(textured.eval_pdf(wo, wi_).f - f);
-      rest += weight * mean_abs(bsdf_->rest(wo, wi_) - live[k]);
+      rest += weight * mean_abs(bsdf().rest(wo, wi_) - live[k]);
       rest_total += weight * mean_abs(live[k]);
       check_reciprocity(wo);
     }
@@ -198,7 +238,7 @@ class PointCheck {
   }
 
   void check_reciprocity(const Vec3& wo) {
-    const Rgb forward = bsdf_->eval(wo, wi_, rng_), backward = bsdf_->eval(wi_, wo, rng_);
+    const Rgb forward = bsdf().eval(wo, wi_, rng_), backward = bsdf().eval(wi_, wo, rng_);
     for (int c = 0; c < 3; ++c) {
       const double scale = std::max({std::abs(forward[c]), std::abs(backward[c]), kDarkestValue});
       point_.reciprocity = std::max(point_.reciprocity, std::abs(forward[c] - backward[c]) / scale);
@@ -210,10 +250,8 @@ class PointCheck {
   ColorSpace color_space_;
   VerifyPoint point_;
   Vec3 wi_;
-  std::optional<TableBsdf> bsdf_;
   std::optional<TexturedTable> textured_;
-  Wavelengths wavelengths_;
-  std::optional<Pfmc> model_;
+  std::shared_ptr<const Prepared> prepared_;
   Directions directions_;
 };
 
@@ -251,16 +289,12 @@ VerifySettings verify_settings_of(const Recipe& recipe) {
 
 VerifyReport verify(const TableView& table, const VerifySettings& settings) {
   estimator_for_truth(settings.truth, table.head().material);  // throws if it has none
-  const Spectrum spectrum =
-      parse_stored_recipe(table.head().info.at("recipe"), "recipe of the table").spectrum;
+  const SharedChecks shared(table, settings);
   VerifyReport report;
   report.truth = name_of(settings.truth);
   report.points.resize(static_cast<std::size_t>(settings.points));
-  std::optional<TexturedTable> textured;
-  if (table.is_in_memory()) textured.emplace(table.head(), Arithmetic::reproducible);
-  run_parallel_tasks(report.points.size(), settings.threads, settings.on_progress, [&](std::size_t k) {
-    report.points[k] = PointCheck(table, textured, spectrum, settings, k).run();
-  });
+  run_parallel_tasks(report.points.size(), settings.threads, settings.on_progress,
+                     [&](std::size_t k) { report.points[k] = PointCheck(shared, k).run(); });
   report.error = quantiles(report.points, &VerifyPoint::error);
   report.textured_error = quantiles(report.points, &VerifyPoint::textured_error);
   report.rest_error = quantiles(report.points, &VerifyPoint::rest_error);

@@ -139,7 +139,7 @@ void add_returning_shapes(const Recipe& recipe, FactorShapes& factors) {
     ranks.nodes = {1};
     depths.nodes = {0};
   }
-  factors.return_cosine = shape_of(recipe, "return_cosine", {ranks}, Precision::single_float);
+  factors.return_cosine = shape_of(recipe, "return_cosine", {cubic(ranks)}, Precision::single_float);
   factors.returning = shape_of(recipe, "returning", {cubic(depths), cubic(ranks)}, Precision::single_float);
 }
 

@@ -53,6 +53,11 @@ Rgb weighted(const std::vector<Rgb>& transmittances, std::span<const double> wei
   return sum;
 }
 
+// Polynomials between the nodes of a steep film may reach beyond.
+Rgb within_shares(const Rgb& power) {
+  return transform(power, [](double x) { return std::clamp(x, 0.0, 1.0); });
+}
+
 NdArray first_visit(const Recipe& recipe) {
   const Wavelengths w = recipe.spectrum.wavelengths(recipe.material);
   const Axis path{"optical_path", "1", spaced_nodes(0, kLongestPath, kPathNodes, 3), 3};
@@ -93,10 +98,12 @@ void bake_film(const Recipe& recipe, Table& table) {
         through.push_back(layered ? power.transmittance : Rgb(1) - table.film_reflectance.get(row + c));
       }
       if (table.film_transmittance.empty()) continue;
-      for (std::size_t c = 0; c < cosine.size(); ++c)
-        table.film_transmittance.set(
-            row + c, rough ? weighted(through, std::span(weights).subspan(c * cosine.size(), cosine.size()))
-                           : through[c]);
+      for (std::size_t c = 0; c < cosine.size(); ++c) {
+        Rgb mean = through[c];
+        if (rough) mean = weighted(through, std::span(weights).subspan(c * cosine.size(), cosine.size()));
+        if (layered && !recipe.spectrum.is_full()) mean = within_shares(mean);
+        table.film_transmittance.set(row + c, mean);
+      }
     }
   }
 }

@@ -79,12 +79,11 @@ class FilmErrors {
   explicit FilmErrors(const Recipe& recipe)
       : recipe_(recipe), wavelengths_(recipe.spectrum.wavelengths(recipe.material)) {}
 
-  // The thicker the film, the more fringes there are over the cosine.
-  double over(const Axis& cosine) const {
+  double over_cosine(const Axis& cosine) const {
     std::vector<double> errors;
-    for (const double share : {0.6, 0.8, 1.0})
+    for (const double thickness_nm : thicknesses())
       for (const double base_ior : base_iors()) {
-        const FilmColors film = film_at(lerp(share, recipe_.grid[0].low(), recipe_.grid[0].high()), base_ior);
+        const FilmColors film = film_at(thickness_nm, base_ior);
         std::vector<Rgb> nodes;
         for (const double c : cosine.nodes) nodes.push_back(reflectance(film, c));
         for (std::size_t k = 0; k + 1 < cosine.size(); ++k) {
@@ -112,6 +111,12 @@ class FilmErrors {
   }
 
  private:
+  // Thick films have the most fringes over the cosine.
+  std::vector<double> thicknesses() const {
+    const Axis& axis = recipe_.grid[0];
+    if (axis.size() == 1) return {axis.low()};
+    return {lerp(0.6, axis.low(), axis.high()), lerp(0.8, axis.low(), axis.high()), axis.high()};
+  }
   std::vector<double> base_iors() const {
     const Axis& axis = recipe_.grid[1];
     if (axis.size() == 1) return {axis.low()};
@@ -152,8 +157,8 @@ Fineness fineness_of(const Recipe& recipe) {
   const auto of_thickness = errors_of(kPhaseSteps.size(), [&](std::size_t choice) {
     return error.over_thickness(thickness_axis(recipe, choice));
   });
-  const auto of_cosine =
-      errors_of(kCosines.size(), [&](std::size_t choice) { return error.over(cosine_axis(recipe, choice)); });
+  const auto of_cosine = errors_of(
+      kCosines.size(), [&](std::size_t choice) { return error.over_cosine(cosine_axis(recipe, choice)); });
   for (double allowed = kMostError;; allowed *= 2) {
     const Fineness fineness{first_within(of_thickness, allowed), first_within(of_cosine, allowed)};
     const double cells =
@@ -166,8 +171,7 @@ Fineness fineness_of(const Recipe& recipe) {
 }  // namespace
 
 std::vector<Axis> film_axes(const Recipe& recipe) {
-  const bool is_layered = recipe.spectrum.film().is_layered(recipe.material);
-  const Fineness fineness = is_layered ? fineness_of(recipe) : Fineness();
+  const Fineness fineness = is_layered(recipe) ? fineness_of(recipe) : Fineness();
   return {thickness_axis(recipe, fineness.thickness), base_ior_axis(recipe),
           cosine_axis(recipe, fineness.cosine)};
 }

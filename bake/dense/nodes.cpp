@@ -73,7 +73,7 @@ DenseNodes::DenseNodes(const Recipe& recipe)
                    static_cast<std::size_t>(recipe.table.azimuths)) {
   head_.material = recipe.material;
   head_.symmetry = symmetry_of(recipe);
-  if (recipe.spectrum.film().is_layered(recipe.material)) head_.schema_version = kTableSchemaVersion;
+  if (is_layered(recipe)) head_.schema_version = kTableSchemaVersion;
   bake_film(recipe, head_);
   frame_.emplace(recipe.material, head_.first_visit, head_.has_layered_film());
   const auto axes = rest_axes(recipe);

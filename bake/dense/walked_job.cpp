@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <memory>
+#include <mutex>
 
 #include "bake/base/running_mean.h"
 #include "bake/blocks/block_bytes.h"
@@ -98,6 +100,24 @@ class WalkedValues {
   const Blocks& blocks_;
 };
 
+// Keeps the model of the node that was asked for last. The rows of a node follow one another, and that of a
+// film of many layers takes longer to make than some rows take to walk.
+class LatestModel {
+ public:
+  template <class Make>
+  std::shared_ptr<const Pfmc> of(std::size_t node, Make make) {
+    const std::lock_guard lock(mutex_);
+    if (!model_ || node_ != node) model_ = make();
+    node_ = node;
+    return model_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::size_t node_ = 0;
+  std::shared_ptr<const Pfmc> model_;
+};
+
 class WalkedJob : public BakeJob {
  public:
   WalkedJob(const Recipe& recipe, std::uint64_t seed) : recipe_(recipe), seed_(seed), nodes_(recipe) {}
@@ -112,12 +132,14 @@ class WalkedJob : public BakeJob {
 
   Block run(std::size_t task) const override {
     const std::size_t node = task / nodes_.wi().size(), i = task % nodes_.wi().size();
-    const Material material = nodes_.material(node);
-    const Pfmc model(material, recipe_.spectrum.wavelengths(material));
-    RowWalks walks(model, technique_of(recipe_.accuracy.estimator), nodes_.wi()[i], recipe_.accuracy.noise,
+    const std::shared_ptr<const Pfmc> model = model_.of(node, [&] {
+      const Material material = nodes_.material(node);
+      return std::make_shared<const Pfmc>(material, recipe_.spectrum.wavelengths(material));
+    });
+    RowWalks walks(*model, technique_of(recipe_.accuracy.estimator), nodes_.wi()[i], recipe_.accuracy.noise,
                    Rng(seed_, i));
     const std::span<const Vec3> wo = nodes_.wo();
-    const std::size_t together = std::min(model.exits_per_walk(), wo.size());
+    const std::size_t together = std::min(model->exits_per_walk(), wo.size());
     for (std::size_t first = 0; first < wo.size(); first += together)
       walks.add(wo.subspan(first, std::min(together, wo.size() - first)));
     return walks.block();
@@ -137,6 +159,7 @@ class WalkedJob : public BakeJob {
   const Recipe& recipe_;
   std::uint64_t seed_;
   DenseNodes nodes_;
+  mutable LatestModel model_;
 };
 
 }  // namespace

@@ -38,8 +38,7 @@ double bytes_of(const Recipe& recipe, Encoding encoding) {
     return bytes;
   }
   const double value = recipe.table.precision == Precision::half_float ? 2 : 4;
-  const bool is_layered = recipe.spectrum.film().is_layered(recipe.material);
-  const double films = recipe.material.is_smooth() && !is_layered ? 1 : 2;
+  const double films = recipe.material.is_smooth() && !is_layered(recipe) ? 1 : 2;
   return (3 * value + 4) * cells_of(rest_axes(recipe)) + films * 3 * 4 * cells_of(film_axes(recipe));
 }
 

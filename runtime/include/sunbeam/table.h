@@ -19,6 +19,7 @@
 // Some light of the rest has not been through the pigment: scattered near its top, or thrown from facet to
 // facet above the film. It does not decay, so a pigment that scatters and multiple facets have decay = 1.
 // Multiple facets reflect where the film lets nothing through (R near 1), so T is raised to 0.25 for them.
+// That of other layered films (layered_film.h) is raised to 0.01, as layers may let through next to nothing.
 //
 // Where colours are folded spectra (spectrum "full") the two terms become
 //   ballistic F(tau path) / pi + decay(tau (1/m_i + 1/m_o)) remainder,

@@ -35,15 +35,14 @@
 // in place of m, with the a of that file.
 //
 // Under a layered film (layered_film.h) no closed form is fast enough, and what passes may depend on the
-// wavelength as sharply as a mirror's band, which moves with the angle. So arrays hold what the film reflects,
-// R, and B at the least absorption tau0 of the grid, P, and X holds all of the bracket,
+// wavelength as sharply as a mirror's band, which moves with the angle. So arrays hold what the film
+// reflects, R, and B at the least absorption tau0 of the grid, P, and X holds all of the bracket,
 //
 //   rest = B(wi) B(wo) [X with path "sum", V1 + X with "product"],   B = P exp(L - a (tau - tau0) / m~),
 //
-// with the positive part of each weight in the fold of B, so that no channel of it passes through 0. All are
-// cubic over the nodes of thickness and base IOR, which are as many as the film's error between them asks
-// for. R and P are linear over even cosines; L and X are linear over the absorption, the azimuth and the root
-// of the cosine. An opaque base leaves R alone.
+// with the positive part of each weight in the fold of B, so that no channel of it passes through 0. Nodes of
+// thickness and base IOR are as many as the film's error between them asks for. R and P are cubic in the
+// thickness; all else is linear, over even cosines too. An opaque base leaves R alone.
 //
 // sample mixes bounded visible normals (ggx.h; for a smooth film its mirror direction, a Dirac), and for the
 // rest two densities proportional to powers of cos(theta_i), which grow with the absorption. The choice

@@ -213,7 +213,7 @@ class TexturedLookup<TexturedKind::layered> {
 
   struct Viewer {
     Viewer(const TexturedLookup& lookup, const Vec3& wo)
-        : facets(lookup.data_.facets, wo), end(lookup.end(wo, facets.cosine, facets.root)) {
+        : facets(lookup.data_.facets, wo), end(lookup.end(wo, facets.cosine)) {
       const LayeredRest& layered = *lookup.data_.layered;
       first_chance = layered.first_chance(lookup.point_, end);
       if (layered.has_rest()) factor = layered.factor(lookup.point_, end);
@@ -230,7 +230,7 @@ class TexturedLookup<TexturedKind::layered> {
     const FacetPair pair(data_.facets, viewer.facets, wo, wi);
     const float chance = viewer.first_chance, rest_pdf = (1 - chance) * at_.rest_density_.pdf(pair.cosine);
     const Color4 rest =
-        data_.layered->has_rest() ? this->rest(viewer, end(wi, pair.cosine, pair.root), wo, wi) : Color4{};
+        data_.layered->has_rest() ? this->rest(viewer, end(wi, pair.cosine), wo, wi) : Color4{};
     if (data_.smooth) return {to_rgb(rest), double{rest_pdf}};
     return {to_rgb(rest + pair.lobe * film_at(pair.half_cosine)), double{rest_pdf + chance * pair.pdf}};
   }
@@ -241,8 +241,8 @@ class TexturedLookup<TexturedKind::layered> {
   }
 
  private:
-  LayeredRest::End end(const Vec3& w, float cosine, float root) const {
-    return {cosine, root, 1 / std::sqrt(at_.pigment_.pigment_cosine_squared(cosine)), data_.quadrant(w)};
+  LayeredRest::End end(const Vec3& w, float cosine) const {
+    return {cosine, 1 / std::sqrt(at_.pigment_.pigment_cosine_squared(cosine)), data_.quadrant(w)};
   }
   Color4 film_at(float cosine) const { return data_.layered->reflectance(point_, std::min(cosine, 1.0f)); }
   Color4 rest(const Viewer& viewer, const LayeredRest::End& i, const Vec3& wo, const Vec3& wi) const {

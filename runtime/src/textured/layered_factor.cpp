@@ -27,19 +27,14 @@ LayeredDirections::LayeredDirections(const LayeredWaves& waves, const LayeredGri
                                      double base_ior) {
   constexpr double kLeastBelow = 0.05;
   material.base_ior = base_ior;
-  for (int r = 0; r < LayeredGrid::kRoots; ++r) {
-    const double x = LayeredGrid::root(r);
-    cosines.push_back(entering_cosine(material, std::max(x * x, kLeastTexturedCosine), kLeastBelow));
+  constexpr int kCosines = LayeredGrid::kLogCosines;
+  for (int column = 0; column < grid.columns(); ++column) {
+    const double node = std::max(grid.cosine_of_column(column), kLeastTexturedCosine);
+    cosines.push_back(entering_cosine(material, node, kLeastBelow));
+    const double share = node_share(column / kCosines, grid.phis) * node_share(column % kCosines, kCosines);
+    measure.push_back(cosines.back() > node ? 0 : 2 * kPi * node * share);
+    passages.push_back(waves.passage(cosines.back(), grid.phi_of_column(column)));
   }
-  for (int p = 0; p < grid.phis; ++p)
-    for (int r = 0; r < LayeredGrid::kRoots; ++r) {
-      const double x = LayeredGrid::root(r), cosine = cosines[static_cast<std::size_t>(r)];
-      const bool is_let_in = cosine <= std::max(x * x, kLeastTexturedCosine);
-      measure.push_back(is_let_in ? node_share(p, grid.phis) * node_share(r, LayeredGrid::kRoots) * 4 * kPi *
-                                        x * x * x
-                                  : 0);
-      passages.push_back(waves.passage(cosine, grid.phi(p)));
-    }
 }
 
 LayeredFactor::LayeredFactor(const Table& table, const LayeredGrid& grid, const LayeredWaves& waves,

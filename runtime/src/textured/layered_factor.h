@@ -20,9 +20,8 @@ inline constexpr double kLeastTexturedCosine = 1e-4;
 struct LayeredDirections {
   LayeredDirections(const LayeredWaves& waves, const LayeredGrid& grid, Material material, double base_ior);
 
-  std::vector<double> cosines;                  // of each root
-  std::vector<double> measure;                  // cos dw of each column in the mean over a quadrant
-  std::vector<LayeredWaves::Passage> passages;  // of each column
+  std::vector<double> cosines, measure;  // of each column; cos dw of it, in the mean over a quadrant
+  std::vector<LayeredWaves::Passage> passages;
 };
 
 class LayeredFactor {
@@ -44,9 +43,7 @@ class LayeredFactor {
     return &shares_[static_cast<std::size_t>(column) * field_.size()];
   }
 
-  double cosine_of(int column) const {
-    return directions_.cosines[static_cast<std::size_t>(column % LayeredGrid::kRoots)];
-  }
+  double cosine_of(int column) const { return directions_.cosines[static_cast<std::size_t>(column)]; }
   const WaveField& field() const { return field_; }
   const Color4& absorption() const { return absorption_; }
 

@@ -19,9 +19,9 @@ constexpr std::size_t kAbsorptions = 12;
 constexpr int kThicknesses = 8, kMostThicknesses = 512;  // intervals
 constexpr int kBaseIors = 4, kMostBaseIors = 16;
 constexpr double kPerFringe = 2;        // intervals to begin with, of the shortest wavelength
-constexpr double kMostError = 3e-3;     // between nodes, of what the film reflects and lets through
+constexpr double kMostError = 1e-3;     // between nodes, of what the film reflects and lets through
 constexpr double kMostFilmBytes = 8e6;  // of R, and of P
-constexpr double kMostPairBytes = 40e6;
+constexpr double kMostPairBytes = 8e6;
 constexpr double kMostWork = 3e7;  // points times wavelengths times layers: some minutes
 
 std::size_t layers_of(const Wavelengths& w) {
@@ -94,15 +94,19 @@ int first_thicknesses(const Table& table) {
 Axis thickness_axis(const Table& table) {
   const Axis& base_ior = table.factors.grid[1];
   const int first = first_thicknesses(table);
+  Axis axis = table.factors.grid[0];
+  axis.is_cubic = true;
   return resolved_axis(
-      table.factors.grid[0], first, std::max(first, kMostThicknesses), kMostError,
+      axis, first, std::max(first, kMostThicknesses), kMostError,
       [&](double nm) { return film_at(table, nm, base_ior.low()); }, film_error);
 }
 
 Axis base_ior_axis(const Table& table) {
   const Axis& thickness = table.factors.grid[0];
+  Axis axis = table.factors.grid[1];
+  axis.is_cubic = false;
   return resolved_axis(
-      table.factors.grid[1], kBaseIors, kMostBaseIors, kMostError,
+      axis, kBaseIors, kMostBaseIors, kMostError,
       [&](double base_ior) { return film_at(table, thickness.high(), base_ior); }, film_error);
 }
 
@@ -138,7 +142,7 @@ void LayeredGrid::fit_memory() {
     cosines = (cosines - 1) / 2 + 1;
   if (phis > 1) phi_step = kPhiStep;
   for (const int step : {1, 2, 3, 4}) {
-    root_step = step;
+    cosine_step = step;
     if (bytes_of(pair_cells()) <= kMostPairBytes) break;
   }
   const double bytes = bytes_of(film_cells() + share_cells() + log_cells() + pair_cells()),

@@ -23,26 +23,29 @@ struct LayeredGrid {
   std::size_t film_cells() const { return count(points(), cosines); }
   std::size_t share_cells() const { return has_rest ? count(points(), phis, cosines) : 0; }
 
-  // L is (point, absorption, azimuth, root of the cosine); roots are even.
-  static constexpr int kRoots = 25;
-  static double root(int r) { return static_cast<double>(r) / (kRoots - 1); }
-  int columns() const { return phis * kRoots; }
+  // L is (point, absorption, azimuth, cosine), with fewer cosines. A column is a direction of it.
+  static constexpr int kLogCosines = 25;
+  int columns() const { return phis * kLogCosines; }
+  double cosine_of_column(int column) const {
+    return static_cast<double>(column % kLogCosines) / (kLogCosines - 1);
+  }
+  double phi_of_column(int column) const { return phi(column / kLogCosines); }
   std::size_t log_cells() const { return has_rest ? count(points(), absorptions(), columns()) : 0; }
 
-  // X is (point, absorption, end, end). Ends are some of the columns of L, as (azimuth, root).
-  int pair_roots() const { return (kRoots - 1) / root_step + 1; }
+  // X is (point, absorption, end, end). Ends are some of the columns of L, as (azimuth, cosine).
+  int pair_cosines() const { return (kLogCosines - 1) / cosine_step + 1; }
   int pair_phis() const { return (phis - 1) / phi_step + 1; }
-  int ends() const { return pair_phis() * pair_roots(); }
+  int ends() const { return pair_phis() * pair_cosines(); }
   int column_of_end(int end) const {
-    return end / pair_roots() * phi_step * kRoots + end % pair_roots() * root_step;
+    return end / pair_cosines() * phi_step * kLogCosines + end % pair_cosines() * cosine_step;
   }
   std::size_t pair_cells() const { return has_rest ? count(points(), absorptions(), ends() * ends()) : 0; }
 
-  std::array<Axis, 3> axes;        // nodes of the parameters; the first two are cubic
+  std::array<Axis, 3> axes;        // nodes of the parameters
   std::array<EvenAxis, 3> limits;  // their ranges
   bool has_rest, is_product;       // nothing lies below the film on an opaque base
   int cosines, phis;               // even azimuths in a quadrant; 1 for an isotropic film
-  int root_step = 1, phi_step = 1;
+  int cosine_step = 1, phi_step = 1;
 
  private:
   static std::size_t count(int a, int b, int c = 1) {

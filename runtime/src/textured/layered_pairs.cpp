@@ -30,7 +30,7 @@ LayeredPairs::LayeredPairs(const Table& table, const LayeredGrid& grid, const La
     const double cosine = factor.cosine_of(column);
     below_.push_back(frame.one_visit_cosine(cosine));
     taps_.push_back(direction_taps(axes[kFirstDirection], axes[kFirstDirection + 1], frame.coordinate(cosine),
-                                   grid.phi(column / LayeredGrid::kRoots)));
+                                   grid.phi_of_column(column)));
   }
 }
 

@@ -17,6 +17,11 @@ Color4 least_reflectance(const Wavelengths& wavelengths) {
   return Color4{};
 }
 
+Axis linear(Axis axis) {
+  axis.is_cubic = false;
+  return axis;
+}
+
 int nearest(const BoundAxis::Taps& taps) {
   const auto most = std::max_element(taps.weight.begin(), taps.weight.begin() + taps.count);
   return taps.offset[static_cast<std::size_t>(most - taps.weight.begin())];
@@ -28,38 +33,32 @@ LayeredRest::LayeredRest(const Table& table)
     : grid_(table),
       absorption_(mean_absorption(table.factors.wavelengths)),
       pigment_thickness_nm_(table.material.pigment_thickness_nm),
-      thickness_(grid_.axes[0], grid_.axes[1].size()),
+      cubic_thickness_(grid_.axes[0], grid_.axes[1].size()),
+      linear_thickness_(linear(grid_.axes[0]), grid_.axes[1].size()),
       base_ior_(grid_.axes[1], 1),
       absorptions_(grid_.axes[2], 1),
       least_(least_reflectance(table.factors.wavelengths)),
       arrays_(table, grid_, absorption_) {}
 
 LayeredRest::Point LayeredRest::point(const Parameters& at) const {
-  const BoundAxis::Taps d = thickness_.at(at.film_thickness_nm), n = base_ior_.at(at.base_ior),
+  const BoundAxis::Taps d = linear_thickness_.at(at.film_thickness_nm), n = base_ior_.at(at.base_ior),
                         s = absorptions_.at(at.absorption_per_nm);
-  Point point;
-  point.count = 0;
-  for (int i = 0; i < d.count; ++i)
-    for (int j = 0; j < n.count; ++j) {
-      point.node[point.count] = d.offset[i] + n.offset[j];
-      point.weight[point.count++] = d.weight[i] * n.weight[j];
-    }
-  point.absorption = s.offset[0];
-  point.upper_absorption = s.count > 1 ? s.weight[1] : 0;
-  point.nearest = nearest(d) + nearest(n);
-  point.nearest_absorption = nearest(s);
-  point.beyond =
-      static_cast<float>((at.absorption_per_nm - grid_.axes[2].nodes.front()) * pigment_thickness_nm_);
-  return point;
+  return {{cubic_thickness_.at(at.film_thickness_nm), n},
+          {d, n},
+          s.offset[0],
+          s.count > 1 ? s.weight[1] : 0,
+          nearest(d) + nearest(n),
+          nearest(s),
+          static_cast<float>((at.absorption_per_nm - grid_.axes[2].nodes.front()) * pigment_thickness_nm_)};
 }
 
 Color4 LayeredRest::reflectance(const Point& at, float cosine) const {
   const EvenPosition c(cosine, grid_.cosines);
   Color4 low{}, high{};
-  for (int k = 0; k < at.count; ++k) {
-    const Color4* row = arrays_.film.data() + at.node[k] * grid_.cosines + c.lower;
-    low += at.weight[k] * row[0];
-    high += at.weight[k] * row[1];
+  for (int k = 0; k < at.cubic.count; ++k) {
+    const Color4* row = arrays_.film.data() + at.cubic.node[k] * grid_.cosines + c.lower;
+    low += at.cubic.weight[k] * row[0];
+    high += at.cubic.weight[k] * row[1];
   }
   return max4(low + c.upper_weight * (high - low), least_);
 }
@@ -72,30 +71,29 @@ Color4 LayeredRest::share(const Point& at, const End& w) const {
     const float azimuth = azimuths == 1 ? 1 : a == 0 ? 1 - p.upper_weight : p.upper_weight;
     const int first = (azimuths == 1 ? 0 : p.lower + a) * grid_.cosines + c.lower;
     Color4 low{}, high{};
-    for (int k = 0; k < at.count; ++k) {
-      const Color4* row = arrays_.shares.data() + at.node[k] * grid_.phis * grid_.cosines + first;
-      low += at.weight[k] * row[0];
-      high += at.weight[k] * row[1];
+    for (int k = 0; k < at.cubic.count; ++k) {
+      const Color4* row = arrays_.shares.data() + at.cubic.node[k] * grid_.phis * grid_.cosines + first;
+      low += at.cubic.weight[k] * row[0];
+      high += at.cubic.weight[k] * row[1];
     }
     sum += azimuth * (low + c.upper_weight * (high - low));
   }
   return max4(sum, Color4{});  // cubics may overshoot
 }
 
-// Node of L at a neighbour, before the column.
 Color4 LayeredRest::log(const Point& at, const End& w) const {
-  const EvenPosition r(w.root, LayeredGrid::kRoots), p(w.phi, grid_.phis);
+  const EvenPosition c(w.cosine, LayeredGrid::kLogCosines), p(w.phi, grid_.phis);
   const int azimuths = grid_.phis == 1 ? 1 : 2, columns = grid_.columns();
   Color4 sum{};
   for (int a = 0; a < azimuths; ++a) {
     const float azimuth = azimuths == 1 ? 1 : a == 0 ? 1 - p.upper_weight : p.upper_weight;
-    const int first = (azimuths == 1 ? 0 : p.lower + a) * LayeredGrid::kRoots + r.lower;
-    for (int k = 0; k < at.count; ++k) {
+    const int first = (azimuths == 1 ? 0 : p.lower + a) * LayeredGrid::kLogCosines + c.lower;
+    for (int k = 0; k < at.linear.count; ++k) {
       const Color4* row =
-          arrays_.logs.data() + (at.node[k] * grid_.absorptions() + at.absorption) * columns + first;
-      const Color4 low = row[0] + r.upper_weight * (row[1] - row[0]),
-                   high = row[columns] + r.upper_weight * (row[columns + 1] - row[columns]);
-      sum += (azimuth * at.weight[k]) * (low + at.upper_absorption * (high - low));
+          arrays_.logs.data() + (at.linear.node[k] * grid_.absorptions() + at.absorption) * columns + first;
+      const Color4 low = row[0] + c.upper_weight * (row[1] - row[0]),
+                   high = row[columns] + c.upper_weight * (row[columns + 1] - row[columns]);
+      sum += (azimuth * at.linear.weight[k]) * (low + at.upper_absorption * (high - low));
     }
   }
   return sum;
@@ -109,22 +107,22 @@ Color4 LayeredRest::factor(const Point& at, const End& w) const {
 
 float LayeredRest::first_chance(const Point& at, const End& w) const {
   if (!grid_.has_rest) return 1;
-  const EvenPosition r(w.root, LayeredGrid::kRoots);
+  const EvenPosition c(w.cosine, LayeredGrid::kLogCosines);
   const int azimuth = static_cast<int>(w.phi * static_cast<float>(grid_.phis - 1) + 0.5f);
   const Color4* row = arrays_.logs.data() +
                       (at.nearest * grid_.absorptions() + at.nearest_absorption) * grid_.columns() +
-                      azimuth * LayeredGrid::kRoots + r.lower;
-  return row[0][3] + r.upper_weight * (row[1][3] - row[0][3]);
+                      azimuth * LayeredGrid::kLogCosines + c.lower;
+  return row[0][3] + c.upper_weight * (row[1][3] - row[0][3]);
 }
 
 LayeredRest::PairTaps LayeredRest::taps(const End& end) const {
-  const EvenPosition r(end.root, grid_.pair_roots());
-  PairTaps taps{{r.lower, r.lower + 1}, {1 - r.upper_weight, r.upper_weight}, 2};
+  const EvenPosition c(end.cosine, grid_.pair_cosines());
+  PairTaps taps{{c.lower, c.lower + 1}, {1 - c.upper_weight, c.upper_weight}, 2};
   if (grid_.pair_phis() == 1) return taps;
   const EvenPosition p(end.phi, grid_.pair_phis());
   for (int k = 0; k < 2; ++k) {
-    taps.node[k] += p.lower * grid_.pair_roots();
-    taps.node[k + 2] = taps.node[k] + grid_.pair_roots();
+    taps.node[k] += p.lower * grid_.pair_cosines();
+    taps.node[k + 2] = taps.node[k] + grid_.pair_cosines();
     taps.weight[k + 2] = taps.weight[k] * p.upper_weight;
     taps.weight[k] *= 1 - p.upper_weight;
   }
@@ -139,8 +137,8 @@ Color4 LayeredRest::exchange(const Point& at, const End& o, const End& i) const 
   for (int s = 0; s < absorptions; ++s) {
     const float upper = s == 1 ? at.upper_absorption : 1 - at.upper_absorption;
     Color4 of_absorption{};
-    for (int k = 0; k < at.count; ++k) {
-      const auto node = static_cast<std::size_t>(at.node[k] * grid_.absorptions() + at.absorption + s);
+    for (int k = 0; k < at.linear.count; ++k) {
+      const auto node = static_cast<std::size_t>(at.linear.node[k] * grid_.absorptions() + at.absorption + s);
       const Color4* pairs = arrays_.pairs.data() + node * static_cast<std::size_t>(ends * ends);
       Color4 of_point{};
       for (int a = 0; a < of_o.count; ++a) {
@@ -149,7 +147,7 @@ Color4 LayeredRest::exchange(const Point& at, const End& o, const End& i) const 
         for (int b = 0; b < of_i.count; ++b) of_row += of_i.weight[b] * row[of_i.node[b]];
         of_point += of_o.weight[a] * of_row;
       }
-      of_absorption += at.weight[k] * of_point;
+      of_absorption += at.linear.weight[k] * of_point;
     }
     sum += upper * of_absorption;
   }

@@ -15,10 +15,23 @@ class LayeredRest {
   explicit LayeredRest(const Table& table);
 
   // Says where parameters lie among the nodes.
+  template <int kMost>
+  struct Neighbours {
+    Neighbours(const BoundAxis::Taps& thickness, const BoundAxis::Taps& base_ior) {
+      for (int i = 0; i < thickness.count; ++i)
+        for (int j = 0; j < base_ior.count; ++j) {
+          node[count] = thickness.offset[i] + base_ior.offset[j];
+          weight[count++] = thickness.weight[i] * base_ior.weight[j];
+        }
+    }
+    int count = 0;
+    std::array<int, kMost> node;
+    std::array<float, kMost> weight;
+  };
   struct Point {
-    int count;  // of the neighbours in thickness and base IOR
-    std::array<int, 16> node;
-    std::array<float, 16> weight;
+    // Neighbours in thickness and base IOR, cubic in the thickness and linear in it.
+    Neighbours<8> cubic;
+    Neighbours<4> linear;
     int absorption;                   // the lower neighbour,
     float upper_absorption;           // and the weight of the upper one
     int nearest, nearest_absorption;  // neighbour
@@ -28,7 +41,7 @@ class LayeredRest {
 
   // Describes a direction; `phi` is the azimuth folded into a quadrant, over pi/2.
   struct End {
-    float cosine, root, per_pigment_cosine, phi;
+    float cosine, per_pigment_cosine, phi;
   };
 
   // Returns R of a cosine.
@@ -59,7 +72,7 @@ class LayeredRest {
   LayeredGrid grid_;
   Color4 absorption_;  // a of each channel, and their mean
   double pigment_thickness_nm_;
-  BoundAxis thickness_, base_ior_, absorptions_;
+  BoundAxis cubic_thickness_, linear_thickness_, base_ior_, absorptions_;
   Color4 least_;  // of R: folded colours may be negative
   LayeredArrays arrays_;
 };

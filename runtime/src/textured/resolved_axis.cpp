@@ -34,7 +34,6 @@ Axis resolved_axis(Axis axis, int first, int most, double most_error,
                    const std::function<Sampled(double)>& sample,
                    const std::function<double(const Sampled&, const Sampled&)>& error) {
   const double low = axis.low(), high = axis.high();
-  axis.is_cubic = true;
   if (axis.size() == 1) return axis;
   axis.nodes = spaced_nodes(axis, low, high, static_cast<std::size_t>(std::min(first, most)) + 1);
   std::vector<Sampled> values;

@@ -9,7 +9,7 @@
 namespace sunbeam {
 inline namespace v1 {
 
-// Returns `axis` cubic, with nodes even in its coordinate from one end to the other. There are at least
+// Returns `axis` with nodes even in its coordinate from one end to the other. There are at least
 // `first` intervals, doubled until halfway between nodes `error(expected, found)` is at most `most_error`
 // everywhere, but no more than `most`. `sample` evaluates what is interpolated.
 using Sampled = std::vector<double>;

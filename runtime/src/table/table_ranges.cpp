@@ -20,7 +20,9 @@ constexpr double kHair = 1e-6;  // what rounding may add
 constexpr Interval kCosine{-kHair, 1 + kHair};
 // Thicknesses are divided by their sum.
 constexpr double kLeastThickness = 1e-300;
-// Indices of one period at all wavelengths under a spread, which evaluates each of them many times.
+// The longest path 2 sum(n d) of a layered film in wavelengths. Bakes have none beyond 46.
+constexpr double kMostWaves = 50;
+// Layers of one period times wavelengths under a spread, which evaluates each of them many times.
 constexpr std::size_t kMostSpreadIndices = 4096;
 // Shares of light: plainly, with what sums of numbers lack of 1, or folded into colours.
 constexpr Interval kShare{-0.001, 1.01}, kFoldedShare{-1, 2};
@@ -96,14 +98,14 @@ void require_proportions(const Wavelengths& waves, double thickest) {
                 to_text(kLeastThickness) + " to " + to_text(most) + ", or 0 of a film of 0 nm");
 }
 
-// What is bound is tabulated over all fringes.
-void require_path(const Table& table, double thickest) {
+// What is bound is tabulated over all fringes, however sharp.
+void require_effort(const Table& table, double thickest) {
   const Wavelengths& waves = table.factors.wavelengths;
   for (std::size_t k = 0; k < waves.size(); ++k) {
     const double path = path_per_thickness(table.material, waves, k) * thickest / waves.nm[k];
-    if (!(path <= kMostFilmWaves))
+    if (!(path <= kMostWaves))
       throw Error("film_thickness_nm reaches a path 2 sum(n d) of " + to_text(path) + " wavelengths at " +
-                  to_text(waves.nm[k]) + " nm; allowed of a layered film: up to " + to_text(kMostFilmWaves));
+                  to_text(waves.nm[k]) + " nm; allowed of a layered film: up to " + to_text(kMostWaves));
   }
   const std::size_t indices = waves.layers.empty() ? 1 : waves.layers.front().size() * waves.size();
   if (table.material.thickness_spread > 0 && indices > kMostSpreadIndices)
@@ -133,7 +135,7 @@ void require_film(const Table& table) {
     require_proportions(waves, thickest);
   }
   if (!waves.base_index.empty()) require_base(table);
-  require_path(table, thickest);
+  require_effort(table, thickest);
 }
 
 void require_factors(const Table& table) {

@@ -157,7 +157,9 @@ TEST(LayeredReader, NamesDefectsOfTheLayers) {
        {"too many layers", periods(501), {"'film.*' describe 1002 layers", "1 to 1000"}},
        {"negative thickness", thickness(-1), {"'film.1.thickness_nm' holds -1", "0 to 1e+05"}},
        {"thick layer", thickness(2e5), {"'film.1.thickness_nm' holds 2e+05", "0 to 1e+05"}},
-       {"thickness without number", thickness(kNan), {"'film.1.thickness_nm' holds 'nan'"}},
+       {"thickness without number",
+        with_attribute("film.1.thickness_nm", "nan"),
+        {"'film.1.thickness_nm' holds 'nan'"}},
        {"list of thicknesses",
         with_attribute("film.1.thickness_nm", "1 2"),
         {"'film.1.thickness_nm' is a list"}},
@@ -180,18 +182,17 @@ TEST(LayeredReader, NamesDefectsOfTheLayers) {
                   [](Axis& axis) {
                     axis.nodes = {0, 5e4};
                   }),
-        {"film_thickness_nm reaches a path 2 sum(n d) of", "wavelengths at 400 nm", "up to 100"}},
+        {"film_thickness_nm reaches a path 2 sum(n d) of", "wavelengths at 400 nm", "up to 50"}},
        {"an index of the base alone",
         with_attribute("base.n", "1.5 1.5 1.5 1.5 1.5"),
         {"'base.k' is missing"}}});
 }
 
-// A spread evaluates the film many times.
+// A spread evaluates the film at many thicknesses.
 TEST(LayeredReader, ManyUnevenLayers) {
   Table table = layered_table();
-  Wavelengths& waves = table.factors.wavelengths;
-  for (auto& layers : waves.layers) layers.resize(900, {1, 1.5});
-  waves.film_periods = 1;
+  for (auto& layers : table.factors.wavelengths.layers) layers.resize(900, {1, 1.5});
+  table.factors.wavelengths.film_periods = 1;
   expect_named(table, {{"spread",
                         [](Table& t) { t.material.thickness_spread = 0.1; },
                         {"'film.*' hold 4500 indices", "thickness_spread: up to 4096"}}});

@@ -47,7 +47,8 @@ std::vector<Encoding> encodings_of(const Recipe& recipe) {
   if (!has_factors(recipe.material)) return {Encoding::dense};
   if (recipe.grid[1].size() > 1 && reaches_below(recipe)) return {Encoding::factored};
   if (!has_factored_depths(recipe)) return {Encoding::dense};
-  if (bytes_of(recipe, Encoding::factored) < bytes_of(recipe, Encoding::dense))
+  const bool is_small = bytes_of(recipe, Encoding::factored) < bytes_of(recipe, Encoding::dense);
+  if (is_small || is_layered(recipe))  // what facets do takes no walks
     return {Encoding::factored, Encoding::dense};
   return {Encoding::dense, Encoding::factored};
 }

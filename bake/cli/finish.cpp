@@ -20,8 +20,9 @@ void save(const FinishedBake& table, const std::string& path) {
   const auto& info = table.info();
   std::error_code no_file;  // but a device or a FIFO
   const auto bytes = std::filesystem::file_size(path, no_file);
-  message("{}: {}{}, {} walks of {}", path, info.at("encoding"),
-          no_file ? "" : fmt::format(", {} bytes", bytes), info.at("samples"), info.at("estimator"));
+  const std::string& walks = info.at("samples");
+  message("{}: {}{}, {} {}", path, info.at("encoding"), no_file ? "" : fmt::format(", {} bytes", bytes),
+          walks == "0" ? "values by" : walks + " walks of", info.at("estimator"));
 }
 
 int verdict(const std::string& path, const Recipe& recipe, const VerifyReport& report,

@@ -57,6 +57,18 @@ const Bsdf& dense_plain() { return dense_bsdf("roughness = 0.1", "angles = 12");
 const Bsdf& dense_scattering() { return dense_bsdf("scattering_per_nm = 0.5", "angles = 10\nazimuths = 7"); }
 const Bsdf& dense_anisotropic() { return dense_bsdf("roughness = [0.1, 0.3]", "angles = 10\nazimuths = 8"); }
 
+// A mirror of ten layers over a diffuse base, whose colours change fast with both directions.
+const Bsdf& layered_bsdf() {
+  static const Table baked = bake_table(
+      parse_recipe("[material]\nfilm_periods = 5\nroughness = 0.1\n"
+                   "[[material.film]]\nthickness_nm = 60.0\nior = \"titania\"\n"
+                   "[[material.film]]\nthickness_nm = 95.0\nior = \"silica\"\n[spectrum]\nmode = \"full\"\n",
+                   "mirror"),
+      {.seed = 1, .threads = 0, .on_progress = {}});
+  static const TableBsdf bsdf(baked, Parameters::of(baked.material), OutsideGrid::refuse);
+  return bsdf;
+}
+
 const Bsdf& table_bsdf() {
   static const TableBsdf bsdf(table(), Parameters::of(table().material), OutsideGrid::refuse);
   return bsdf;
@@ -220,6 +232,7 @@ void yardstick(benchmark::State& state) {
 BENCHMARK(yardstick);
 BENCHMARK_CAPTURE(eval, lambert, lambert_bsdf());
 BENCHMARK_CAPTURE(eval, table, table_bsdf());
+BENCHMARK_CAPTURE(eval, layered, layered_bsdf());
 BENCHMARK_CAPTURE(eval, dense_plain, dense_plain());
 BENCHMARK_CAPTURE(eval, dense_scattering, dense_scattering());
 BENCHMARK_CAPTURE(eval, dense_anisotropic, dense_anisotropic());
@@ -231,6 +244,7 @@ BENCHMARK_CAPTURE(mis_pdf, exact, exact_bsdf());
 BENCHMARK_CAPTURE(mis_pdf, live, live_bsdf());
 BENCHMARK_CAPTURE(sample, lambert, lambert_bsdf());
 BENCHMARK_CAPTURE(sample, table, table_bsdf());
+BENCHMARK_CAPTURE(sample, layered, layered_bsdf());
 BENCHMARK_CAPTURE(sample, dense_plain, dense_plain());
 BENCHMARK_CAPTURE(sample, dense_scattering, dense_scattering());
 BENCHMARK_CAPTURE(sample, exact, exact_bsdf());

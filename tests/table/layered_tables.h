@@ -16,20 +16,20 @@ inline void add_layers(Wavelengths& waves) {
   }
 }
 
-inline Axis share_axis() { return cubic_axis("facet_share", {0, 0.25, 0.5, 1}, 2); }
+inline Axis rank_axis() { return cubic_axis("facet_rank", {0, 0.25, 0.5, 1}); }
 
 // Rises along the last axis.
 inline void fill_ascending(NdArray& array, std::uint64_t stream) {
   fill_randomly(array, 0, 1, stream);
-  const auto shares = static_cast<std::ptrdiff_t>(array.axes().back().size());
-  for (auto row = array.values().begin(); row != array.values().end(); row += shares)
-    std::sort(row, row + shares);
+  const auto ranks = static_cast<std::ptrdiff_t>(array.axes().back().size());
+  for (auto row = array.values().begin(); row != array.values().end(); row += ranks)
+    std::sort(row, row + ranks);
 }
 
 inline void add_facets(Table& table) {
   const bool isotropic = table.symmetry == Symmetry::isotropic;
   const Axis phi = isotropic ? axis("phi", {0}) : cubic_axis("phi", {0, kPi / 4, kPi / 2});
-  const std::vector<Axis> facets{cubic_axis("theta", {0, 0.5, 1, 1.57}), phi, share_axis()};
+  const std::vector<Axis> facets{cubic_axis("theta", {0, 0.5, 1, 1.57}), phi, rank_axis()};
   const bool is_straight = table.material.transmission == Transmission::straight;
   std::vector<Axis> axes{table.factors.grid[1],
                          is_straight ? axis("optical_depth", {0}) : cubic_axis("optical_depth", {0, 0.3}, 3)};
@@ -41,10 +41,10 @@ inline void add_facets(Table& table) {
 }
 
 inline void add_returning(Table& table) {
-  Axis shares = share_axis(), depths = cubic_axis("optical_depth", {0, 0.3, 0.6}, 3);
-  if (table.material.is_opaque()) shares.nodes = {1}, depths.nodes = {0};
-  table.factors.return_cosine = NdArray("return_cosine", {shares}, Precision::single_float, 1);
-  table.factors.returning = NdArray("returning", {depths, shares}, Precision::single_float, 1);
+  Axis ranks = rank_axis(), depths = cubic_axis("optical_depth", {0, 0.3, 0.6}, 3);
+  if (table.material.is_opaque()) ranks.nodes = {1}, depths.nodes = {0};
+  table.factors.return_cosine = NdArray("return_cosine", {ranks}, Precision::single_float, 1);
+  table.factors.returning = NdArray("returning", {depths, ranks}, Precision::single_float, 1);
   fill_ascending(table.factors.return_cosine, 13);
   fill_randomly(table.factors.returning, 0, 1, 14);
 }

@@ -65,9 +65,9 @@ void check_azimuth(Symmetry symmetry, const Axis& phi) {
                 " nodes; an isotropic table has 1");
 }
 
-void check_shares(const Axis& facet_share) {
-  check_period(facet_share, 0);
-  check_ends(facet_share, 0, 1);
+void check_ranks(const Axis& facet_rank) {
+  check_period(facet_rank, 0);
+  check_ends(facet_rank, 0, 1);
 }
 
 void check_same(const ArrayShape& array, const Axis& axis, const ArrayShape& other, const Axis& others) {
@@ -171,7 +171,7 @@ void check_crossing_axes(const Table& table, const NdArray& facet_cosine, const 
   const auto &facets = facet_cosine.axes(), &axes = crossing.axes();
   check_plain_axis(facets[0], 0, kPi / 2);
   check_azimuth(table.symmetry, facets[1]);
-  check_shares(facets[2]);
+  check_ranks(facets[2]);
   check_parameter(table, axes[0], "base_ior");
   check_plain_axis(axes[1], 0, kDeepest);
   for (std::size_t k = 0; k < facets.size(); ++k) check_same(crossing, axes[2 + k], facet_cosine, facets[k]);
@@ -179,11 +179,11 @@ void check_crossing_axes(const Table& table, const NdArray& facet_cosine, const 
 
 // One cell stands for an opaque base, which is not met.
 void check_returning_axes(const Table& table, const NdArray& return_cosine, const NdArray& returning) {
-  const Axis& share = return_cosine.axes()[0];
-  if (!table.material.is_opaque()) check_shares(share);
-  check_plain_axis(share, 0, 1);
+  const Axis& rank = return_cosine.axes()[0];
+  if (!table.material.is_opaque()) check_ranks(rank);
+  check_plain_axis(rank, 0, 1);
   check_plain_axis(returning.axes()[0], 0, kDeepest);
-  check_same(returning, returning.axes()[1], return_cosine, share);
+  check_same(returning, returning.axes()[1], return_cosine, rank);
 }
 
 void check_first_visit_axis(const NdArray& first_visit) { check_plain_axis(first_visit.axes()[0], 0, 1000); }

@@ -37,14 +37,14 @@ void require(const NdArray& array, const Interval& allowed) {
                 to_text(allowed.high) + ": it holds " + to_text(*at));
 }
 
-// Cosines may not fall along the last axis, the share of facets below them.
+// Cosines may not fall along the last axis, the rank of facets by them.
 void require_ascending(const NdArray& array) {
-  const std::size_t shares = array.axes().back().size();
+  const std::size_t ranks = array.axes().back().size();
   const auto values = array.values();
   for (std::size_t cell = 1; cell < values.size(); ++cell)
-    if (cell % shares != 0 && values[cell] < values[cell - 1] - static_cast<float>(kHair))
+    if (cell % ranks != 0 && values[cell] < values[cell - 1] - static_cast<float>(kHair))
       throw Error("array '" + array.name() + "' falls from " + to_text(values[cell - 1]) + " to " +
-                  to_text(values[cell]) + " along 'facet_share'; allowed: to rise");
+                  to_text(values[cell]) + " along 'facet_rank'; allowed: to rise");
 }
 
 void require_light_leaves(const Table& table, const NdArray& returned) {

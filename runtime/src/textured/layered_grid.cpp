@@ -6,7 +6,7 @@
 #include "runtime/src/textured/resolved_axis.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/read_limit.h"
-#include "sunbeam/detail/layered_film.h"
+#include "sunbeam/detail/film_curves.h"
 #include "sunbeam/detail/text.h"
 
 namespace sunbeam {
@@ -22,27 +22,47 @@ constexpr double kPerFringe = 2;        // intervals to begin with, of the short
 constexpr double kMostError = 1e-3;     // between nodes, of what the film reflects and lets through
 constexpr double kMostFilmBytes = 8e6;  // of R, and of P
 constexpr double kMostPairBytes = 8e6;
-constexpr double kMostWork = 3e7;  // points times wavelengths times layers: some minutes
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+constexpr double kMostSeconds = 1;
+#else
+constexpr double kMostSeconds = 300;
+#endif
+constexpr std::size_t kExchangeDirections = 5;  // the first axis of a direction in `exchange`
 
 std::size_t layers_of(const Wavelengths& w) {
   const std::size_t of_period = w.layers.empty() ? 1 : w.layers.front().size();
   return of_period * static_cast<std::size_t>(std::max(w.film_periods, 1));
 }
 
-// What one evaluation of the film costs, against one of a single layer at one wavelength.
-double work_of(const Table& table) {
-  constexpr double kPlatelets = 30;
-  const Wavelengths& w = table.factors.wavelengths;
-  return static_cast<double>(w.size() * layers_of(w)) *
-         (table.material.thickness_spread > 0 ? kPlatelets : 1);
+// Cells of an array at fixed places on the axes before this one.
+double cells_from(const NdArray& array, std::size_t axis) {
+  return array.empty() ? 0 : static_cast<double>(axis == 0 ? array.cells() : array.stride(axis - 1));
 }
 
-void require_reasonable_work(double points, const Table& table) {
-  if (points * work_of(table) <= kMostWork) return;
+// About how many seconds the arrays take at one thickness and base IOR.
+double seconds_a_point(const Table& table, double absorptions, double phis) {
+  constexpr double kDirections = 300, kPlatelets = 30, kPassages = 100, kCorners = 256;
+  constexpr double kPerLayer = 3e-8, kPerCell = 3e-9;
+  const Factors& factors = table.factors;
+  const double waves = static_cast<double>(factors.wavelengths.size()),
+               depths = factors.crossing.empty() ? 0 : static_cast<double>(factors.crossing.axes()[1].size());
+  const double film = kDirections * waves * static_cast<double>(layers_of(factors.wavelengths)) *
+                      (table.material.thickness_spread > 0 ? kPlatelets : 1);
+  const double facets =
+      cells_from(factors.crossing, 0) + kPassages * phis * depths * cells_from(factors.crossing, 4);
+  const double visits =
+      absorptions * waves *
+      (cells_from(factors.returning, 1) + kCorners * cells_from(factors.exchange, kExchangeDirections));
+  return kPerLayer * film + kPerCell * (facets + visits);
+}
+
+// A small file can describe a film that takes hours.
+void require_reasonable_time(double points, const Table& table, double absorptions, double phis) {
+  const double seconds = points * seconds_a_point(table, absorptions, phis);
+  if (seconds <= kMostSeconds) return;
   throw Error("textured look-ups of films of " + std::to_string(layers_of(table.factors.wavelengths)) +
-              " layers up to " + to_text(table.factors.grid[0].high()) + " nm take the film at " +
-              to_text(points) + " thicknesses and base IORs; allowed: up to " +
-              to_text(std::floor(kMostWork / work_of(table))));
+              " layers up to " + to_text(table.factors.grid[0].high()) + " nm take about " +
+              to_text(std::ceil(seconds)) + " s to prepare; allowed: up to " + to_text(kMostSeconds) + " s");
 }
 
 // What the film reflects and lets through at some directions, folded: three numbers a direction of the first,
@@ -52,7 +72,7 @@ Sampled film_at(const Table& table, double thickness_nm, double base_ior) {
   Material material = table.material;
   material.film_thickness_nm = thickness_nm;
   material.base_ior = base_ior;
-  const StackSpectrum film = stack_spectrum(material, w);
+  const StackSpectrum film = stack_spectrum(material, w, FilmCurves::kTable.spread_orders);
   Sampled reflected, passing;
   for (const double cosine : {0.15, 0.4, 0.65, 0.85, 1.0}) {
     std::array<double, kMostWavelengths> above, through, below;
@@ -87,7 +107,7 @@ int first_thicknesses(const Table& table) {
   for (std::size_t k = 0; k < w.size(); ++k)
     fringes =
         std::max(fringes, (axis.high() - axis.low()) * path_per_thickness(table.material, w, k) / w.nm[k]);
-  require_reasonable_work(kPerFringe * fringes, table);
+  require_reasonable_time(kPerFringe * fringes, table, 1, 1);
   return std::max(kThicknesses, static_cast<int>(std::ceil(kPerFringe * fringes)));
 }
 
@@ -132,7 +152,7 @@ LayeredGrid::LayeredGrid(const Table& table)
       is_product(has_rest && !table.factors.exchange.empty()),
       cosines(kMostCosines),
       phis(table.symmetry == Symmetry::isotropic ? 1 : kPhis) {
-  require_reasonable_work(points(), table);
+  require_reasonable_time(points(), table, absorptions(), phis);
   fit_memory();
 }
 

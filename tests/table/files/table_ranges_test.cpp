@@ -9,7 +9,7 @@
 #include "sunbeam/table_bsdf.h"
 #include "sunbeam/textured_table.h"
 #include "tests/support/error_of.h"
-#include "tests/table/factored_tables.h"
+#include "tests/table/layered_tables.h"
 
 namespace sunbeam {
 namespace {
@@ -234,6 +234,32 @@ TEST(TableRanges, LookUpsAreFiniteAtTheirEnds) {
         SCOPED_TRACE(to_string(roughness) + " " + std::string(to_string(path)));
         expect_finite(table);
       }
+}
+
+// Cosines that jump from 0 to 1 among the facets.
+void fill_with_a_jump(NdArray& cosines) {
+  const std::size_t ranks = cosines.axes().back().size();
+  for (std::size_t cell = 0; cell < cosines.cells(); ++cell)
+    cosines.set(cell, Rgb(cell % ranks < ranks / 2 ? 0 : 1));
+}
+
+TEST(TableRanges, LookUpsOfLayeredFilmsAreFiniteAtTheirEnds) {
+  for (Table table : test::layered_tables()) {
+    if (!table.is_factored()) continue;
+    Factors& factors = table.factors;
+    for (NdArray* cosines : {&factors.facet_cosine, &factors.return_cosine})
+      if (!cosines->empty()) fill_with_a_jump(*cosines);
+    if (!factors.crossing.empty()) fill_with_ends(factors.crossing, -100, 1e6);
+    if (!factors.returning.empty()) fill_with_ends(factors.returning, 0, 1);
+    if (!factors.exchange.empty()) fill_with_ends(factors.exchange, -65504, 65504);
+    for (auto& layers : factors.wavelengths.layers) {
+      layers[0].index = {kLargestIor, 0};
+      layers[1].index = {kLeastIor, kMostExtinction};
+    }
+    factors.wavelengths.albedo[0] = 0.999;
+    SCOPED_TRACE(to_string(table.material.roughness));
+    expect_finite(table);
+  }
 }
 
 // A rough film's table whose base IORs reach below the exterior's.

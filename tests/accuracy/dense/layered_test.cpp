@@ -11,6 +11,7 @@ struct Case {
   std::string name, text;
   Estimator truth;
   double median, p99;  // bounds of the error
+  int points = 16;
   friend void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 };
 
@@ -28,7 +29,7 @@ const std::string kDarkStack = layer("80", "ior = 1.56") + layer("70", "ior = 1.
 const std::string kSlab =
     "base_ior = 1.5\nalbedo = 0.5\npigment_thickness_nm = 1000\nscattering_per_nm = 0.0015\n"
     "anisotropy = 0.5\nabsorption_per_nm = 0.0005\nfilm_periods = 3\n";
-const std::string kSlabGrid = "absorption_per_nm = {from = 0, to = 0.002, count = 6}\n";
+const std::string kSlabGrid = "absorption_per_nm = {from = 0, to = 0.002, count = 12}\n";
 const std::string kSixLayers = kSlab + "roughness = ";
 
 // Walked tables have their own noise, and walks as truth have theirs: at most half the bound of the median.
@@ -37,7 +38,7 @@ std::vector<Case> cases() {
       {"slab_under_six_layers", recipe(kSixLayers + "0.15", kClearStack, kSlabGrid, "azimuths = 7"),
        Estimator::exact, 0.001, 0.01},
       {"slab_under_six_smooth_layers", recipe(kSixLayers + "0", kClearStack, kSlabGrid, "azimuths = 7"),
-       Estimator::exact, 0.002, 0.02},
+       Estimator::exact, 0.005, 0.015},
       {"slab_under_absorbing_layers",
        recipe(kSixLayers + "0.15", kDarkStack,
               kSlabGrid + "film_thickness_nm = {from = 420, to = 450, count = 4}\n", "azimuths = 7"),
@@ -48,8 +49,8 @@ std::vector<Case> cases() {
        Estimator::exact, 0.004, 0.01},
       {"many_facets_on_metal",
        recipe("base_ior = \"Au\"\nroughness = 0.4\nmicrofacet = \"multiple\"\n", layer("90", "ior = 2.2"), "",
-              "azimuths = 5\n[accuracy]\nnoise = 0.03\n"),
-       Estimator::pfmc, 0.01, 0.03},
+              "azimuths = 4\n[accuracy]\nnoise = 0.2\n"),
+       Estimator::pfmc, 0.03, 0.06, 6},
   };
 }
 
@@ -60,7 +61,7 @@ TEST_P(LayeredDense, IsTheLiveModel) {
   const Table table = bake_table(recipe, BakeSettings{});
   EXPECT_EQ(table.schema_version, kTableSchemaVersion);
   VerifySettings settings = verify_settings_of(recipe);
-  settings.points = 40;
+  settings.points = GetParam().points;
   settings.truth = GetParam().truth;
   settings.tolerance_median = GetParam().median;
   const VerifyReport report = verify(table, settings);

@@ -6,7 +6,7 @@
 namespace sunbeam {
 namespace {
 
-constexpr std::size_t kOrdersPerPart = 32;
+constexpr std::size_t kOrdersPerPart = 32, kOrdersPerLayeredPart = 128;
 constexpr std::size_t kWavelengthAxis = 3;  // of a layered film
 constexpr std::size_t kArrivalStrata = 64;  // each way
 constexpr std::size_t kNodes = ExchangeSolver::kNodes;
@@ -33,8 +33,13 @@ ExchangeWalks::ExchangeWalks(const SharedInputs& bake) : bake_(bake) {
   for (const double depth : axes()[1].nodes) solvers_.emplace_back(depth);
 }
 
+// A part of a layered film is dear to begin: its powers are tabulated, and the strata chosen.
+std::size_t ExchangeWalks::orders_per_part() const {
+  return is_layered(bake_.recipe) ? kOrdersPerLayeredPart : kOrdersPerPart;
+}
+
 std::size_t ExchangeWalks::parts_of_orders() const {
-  return (orders().size() + kOrdersPerPart - 1) / kOrdersPerPart;
+  return (orders().size() + orders_per_part() - 1) / orders_per_part();
 }
 
 std::size_t ExchangeWalks::parts() const {
@@ -43,8 +48,8 @@ std::size_t ExchangeWalks::parts() const {
 }
 
 ExchangeWalks::Orders ExchangeWalks::orders_of(std::size_t part) const {
-  const std::size_t first = part % parts_of_orders() * kOrdersPerPart;
-  return {first, std::min(first + kOrdersPerPart, orders().size())};
+  const std::size_t first = part % parts_of_orders() * orders_per_part();
+  return {first, std::min(first + orders_per_part(), orders().size())};
 }
 
 LegFilm ExchangeWalks::film_at(std::size_t ior, std::size_t part) const {

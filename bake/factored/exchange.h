@@ -30,6 +30,7 @@ class ExchangeWalks {
   void add(std::size_t ior, std::size_t part, const std::string& bytes, NdArray& array) const;
 
  private:
+  std::size_t orders_per_part() const;
   std::size_t parts_of_orders() const;
   std::size_t wavelength_of(std::size_t part) const { return part / parts_of_orders(); }
   LegFilm film_at(std::size_t ior, std::size_t part) const;

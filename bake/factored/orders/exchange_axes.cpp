@@ -6,17 +6,18 @@
 #include "bake/factored/orders/stack_powers.h"
 #include "sunbeam/detail/layered_film.h"
 #include "sunbeam/detail/quadrature.h"
+#include "sunbeam/detail/refraction.h"
 
 namespace sunbeam {
 namespace {
 
-constexpr double kMostError = 1e-3;   // of V
+constexpr double kMostError = 2e-3;   // of V
 constexpr double kSameAlbedo = 1e-6;  // as good as grey
 constexpr std::size_t kLeastAlbedoNodes = 3, kMostAlbedoNodes = 16;
 constexpr double kMiddleNm = 510;
 constexpr std::size_t kDispersiveNodes = 5;
 constexpr std::size_t kLeastFringeNodes = 6, kMostFringeNodes = 4096;
-constexpr double kLeastNodesPerFringe = 3, kMostNodesPerFringe = 96;
+constexpr double kLeastNodesPerFringe = 3, kMostNodesPerFringe = 32;
 constexpr double kMostOrderOfSpread = 100;  // StackSpectrum takes no more
 
 struct Range {
@@ -65,21 +66,51 @@ struct Film {
   Wavelengths one;
 };
 
-// rho at these orders. Spread is left out, since it only smoothes.
-std::vector<double> returned(const Film& film, std::span<const double> orders) {
-  constexpr int kLeastCosines = 48, kCosinesPerOrder = 4;
+// Adds what the film sends back of diffuse light between two cosines of the medium of this index; `weight` is
+// that medium's share in 2 m dm of the base.
+void add_returned(const StackSpectrum& stack, const GaussRule& rule, double ior, double low, double high,
+                  double weight, std::span<double> sum) {
+  std::vector<double> above(stack.lanes()), through(stack.lanes()), below(stack.lanes());
+  for (int i = 0; i < rule.size(); ++i) {
+    const double cosine = lerp(rule.node[i], low, high);
+    stack.powers(ior, cosine, above.data(), through.data(), below.data());
+    for (std::size_t j = 0; j < sum.size(); ++j)
+      sum[j] += weight * rule.weight[i] * (high - low) * 2 * cosine * below[j];
+  }
+}
+
+// rho at these orders. Light that gets out is summed over its cosine outside, where the powers are smooth.
+// Spread is left out, since it only smoothes.
+std::vector<double> returned(const Film& film, const GaussRule& rule, std::span<const double> orders) {
   Material even = film.material;
   even.thickness_spread = 0;
   const StackSpectrum stack = stack_at_orders(even, film.one, orders);
-  const GaussRule rule = gauss_legendre(
-      kLeastCosines + static_cast<int>(kCosinesPerOrder * range_of({orders.begin(), orders.end()}).high));
-  std::vector<double> above(stack.lanes()), through(stack.lanes()), below(stack.lanes()), sum(orders.size());
-  for (int i = 0; i < rule.size(); ++i) {
-    stack.powers(ior_of(even, Side::inside), std::sqrt(rule.node[i]), above.data(), through.data(),
-                 below.data());
-    for (std::size_t j = 0; j < sum.size(); ++j) sum[j] += rule.weight[i] * below[j];
+  const double outside = even.exterior_ior, base = ior_of(even, Side::inside);
+  const double critical = critical_cosine(base, outside);
+  std::vector<double> sum(orders.size());
+  if (critical > 0) {
+    add_returned(stack, rule, base, 0, critical, 1, sum);
+    add_returned(stack, rule, outside, 0, 1, square(outside / base), sum);
+  } else {
+    add_returned(stack, rule, base, 0, 1, 1, sum);
   }
   return sum;
+}
+
+// A rule with as many cosines as rho needs, which resonances between metals raise.
+GaussRule resolving_rule(const std::vector<Film>& films, const Range& orders) {
+  constexpr int kLeastCosines = 24, kMostCosines = 96, kTrials = 17;
+  constexpr double kError = 2e-4;
+  const auto trials = spaced_nodes(orders.low, orders.high, orders.high > orders.low ? kTrials : 1);
+  for (int count = kLeastCosines;; count *= 2) {
+    const GaussRule rule = gauss_legendre(count), finer = gauss_legendre(3 * count / 2);
+    double worst = 0;
+    for (const Film& film : films) {
+      const auto rho = returned(film, rule, trials), better = returned(film, finer, trials);
+      for (std::size_t j = 0; j < rho.size(); ++j) worst = std::max(worst, std::abs(rho[j] - better[j]));
+    }
+    if (worst <= kError || count >= kMostCosines) return rule;
+  }
 }
 
 double visits(double albedo, double returned) { return 1 / (1 - albedo * std::min(returned, 0.9999)); }
@@ -92,15 +123,15 @@ double interpolated(const Axis& axis, std::span<const double> values, double x) 
 }
 
 // The largest relative error of V between nodes; `most_returned` grows to the largest rho.
-double order_error(const Film& film, const Axis& orders, double albedo, double passing,
+double order_error(const Film& film, const GaussRule& rule, const Axis& orders, double albedo, double passing,
                    double& most_returned) {
   const std::vector<double> between = middles(orders);
   std::vector<double> v;
-  for (const double rho : returned(film, orders.nodes)) {
+  for (const double rho : returned(film, rule, orders.nodes)) {
     v.push_back(visits(albedo, passing * rho));
     most_returned = std::max(most_returned, passing * rho);
   }
-  const std::vector<double> rho = returned(film, between);
+  const std::vector<double> rho = returned(film, rule, between);
   double worst = 0;
   for (std::size_t j = 0; j < between.size(); ++j) {
     const double exact = visits(albedo, passing * rho[j]);
@@ -173,6 +204,7 @@ ExchangeAxes exchange_axes(const Recipe& recipe, const Wavelengths& w, double le
   const double albedo = range_of(w.albedo).high, passing = std::exp(-least_depth),
                fringes = range.high - range.low;
   const std::vector<Film> films = films_of(recipe, axes.wavelength);
+  const GaussRule rule = resolving_rule(films, range);
   double most_returned = 0;
   const auto per_fringe = [&](double nodes) { return static_cast<std::size_t>(std::ceil(fringes * nodes)); };
   const std::size_t most = std::clamp(per_fringe(kMostNodesPerFringe), kLeastFringeNodes, kMostFringeNodes);
@@ -181,7 +213,7 @@ ExchangeAxes exchange_axes(const Recipe& recipe, const Wavelengths& w, double le
     axes.fringe_order = orders_axis(range, steps, recipe.material.thickness_spread > 0);
     double worst = 0;
     for (const Film& film : films)
-      worst = std::max(worst, order_error(film, axes.fringe_order, albedo, passing, most_returned));
+      worst = std::max(worst, order_error(film, rule, axes.fringe_order, albedo, passing, most_returned));
     if (worst <= kMostError || steps >= most) break;
   }
   axes.albedo = albedos_axis(w, most_returned);

@@ -87,7 +87,8 @@ std::string recipe_text(const std::string& albedo, const std::string& high_ior) 
 std::map<std::string, std::size_t> nodes_of(const std::string& albedo, const std::string& high_ior) {
   const Recipe recipe = parse_recipe(recipe_text(albedo, high_ior), "mirror.toml");
   std::map<std::string, std::size_t> nodes;
-  for (const Axis& axis : factor_shapes(recipe).exchange.axes()) nodes[axis.name] = axis.size();
+  const ArrayShape exchange = factor_shapes(recipe).exchange;
+  for (const Axis& axis : exchange.axes()) nodes[axis.name] = axis.size();
   return nodes;
 }
 

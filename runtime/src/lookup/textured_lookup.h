@@ -229,10 +229,10 @@ class TexturedLookup<TexturedKind::layered> {
   EvalPdf eval_pdf(const Viewer& viewer, const Vec3& wo, const Vec3& wi) const {
     const FacetPair pair(data_.facets, viewer.facets, wo, wi);
     const float chance = viewer.first_chance, rest_pdf = (1 - chance) * at_.rest_density_.pdf(pair.cosine);
-    const Color4 rest =
-        data_.layered->has_rest() ? this->rest(viewer, end(wi, pair.cosine), wo, wi) : Color4{};
-    if (data_.smooth) return {to_rgb(rest), double{rest_pdf}};
-    return {to_rgb(rest + pair.lobe * film_at(pair.half_cosine)), double{rest_pdf + chance * pair.pdf}};
+    Color4 f{};
+    if (data_.layered->has_rest()) f = rest(viewer, end(wi, pair.cosine), wo, wi);
+    if (data_.smooth) return {to_rgb(f), double{rest_pdf}};
+    return {to_rgb(f + pair.lobe * film_at(pair.half_cosine)), double{rest_pdf + chance * pair.pdf}};
   }
 
   double albedo(const Viewer& viewer) const {
@@ -247,9 +247,11 @@ class TexturedLookup<TexturedKind::layered> {
   Color4 film_at(float cosine) const { return data_.layered->reflectance(point_, std::min(cosine, 1.0f)); }
   Color4 rest(const Viewer& viewer, const LayeredRest::End& i, const Vec3& wo, const Vec3& wi) const {
     const LayeredRest& layered = *data_.layered;
-    Color4 bracket = layered.exchange(point_, viewer.end, i);
+    const LayeredRest::PairRows rows = layered.pair_rows(point_, viewer.end, i);
+    const Color4 factors = viewer.factor * layered.factor(point_, i);
+    Color4 bracket = LayeredRest::exchange(rows);
     if (layered.is_product()) bracket += TexturedData::one_visit(at_.pigment_, layered.absorption(), wo, wi);
-    return viewer.factor * layered.factor(point_, i) * bracket;
+    return factors * bracket;
   }
 
   const TexturedTable::At& at_;

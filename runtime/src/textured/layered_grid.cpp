@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kMostCosines = 257, kLeastCosines = 33;
 constexpr int kPhis = 7, kPhiStep = 3;  // of an anisotropic film
-constexpr std::size_t kAbsorptions = 12;
+constexpr int kAbsorptions = 12;
 constexpr int kThicknesses = 8, kMostThicknesses = 512;  // intervals
 constexpr int kBaseIors = 4, kMostBaseIors = 16;
 constexpr double kPerFringe = 2;        // intervals to begin with, of the shortest wavelength
@@ -115,6 +115,7 @@ Axis thickness_axis(const Table& table) {
   const Axis& base_ior = table.factors.grid[1];
   const int first = first_thicknesses(table);
   Axis axis = table.factors.grid[0];
+  axis.power = 1;  // as fringes are
   axis.is_cubic = true;
   return resolved_axis(
       axis, first, std::max(first, kMostThicknesses), kMostError,
@@ -133,12 +134,16 @@ Axis base_ior_axis(const Table& table) {
 Axis absorption_axis(const Table& table) {
   Axis axis = table.factors.grid[2];
   axis.is_cubic = false;
-  if (axis.size() > 1) axis.nodes = spaced_nodes(axis, axis.low(), axis.high(), kAbsorptions);
+  if (axis.size() == 1) return axis;
+  const EvenAxis even(axis, kAbsorptions);
+  axis.nodes.clear();
+  for (int k = 0; k < kAbsorptions; ++k) axis.nodes.push_back(even.node(k));
   return axis;
 }
 
-std::array<EvenAxis, 3> limits_of(const std::vector<Axis>& grid) {
-  return {EvenAxis(grid[0], 2), EvenAxis(grid[1], 2), EvenAxis(grid[2], 2)};
+EvenAxis even_axis(Axis range, const Axis& nodes) {
+  range.power = nodes.power;
+  return EvenAxis(range, std::max<int>(2, static_cast<int>(nodes.size())));
 }
 
 double bytes_of(std::size_t cells) { return static_cast<double>(cells) * sizeof(Color4); }
@@ -147,7 +152,8 @@ double bytes_of(std::size_t cells) { return static_cast<double>(cells) * sizeof(
 
 LayeredGrid::LayeredGrid(const Table& table)
     : axes{thickness_axis(table), base_ior_axis(table), absorption_axis(table)},
-      limits(limits_of(table.factors.grid)),
+      even{even_axis(table.factors.grid[0], axes[0]), even_axis(table.factors.grid[1], axes[1]),
+           even_axis(table.factors.grid[2], axes[2])},
       has_rest(!table.material.is_opaque()),
       is_product(has_rest && !table.factors.exchange.empty()),
       cosines(kMostCosines),

@@ -41,10 +41,10 @@ struct LayeredGrid {
   }
   std::size_t pair_cells() const { return has_rest ? count(points(), absorptions(), ends() * ends()) : 0; }
 
-  std::array<Axis, 3> axes;        // nodes of the parameters
-  std::array<EvenAxis, 3> limits;  // their ranges
-  bool has_rest, is_product;       // nothing lies below the film on an opaque base
-  int cosines, phis;               // even azimuths in a quadrant; 1 for an isotropic film
+  std::array<Axis, 3> axes;      // nodes of the parameters
+  std::array<EvenAxis, 3> even;  // their ranges; the nodes of thickness and absorption are these
+  bool has_rest, is_product;     // nothing lies below the film on an opaque base
+  int cosines, phis;             // even azimuths in a quadrant; 1 for an isotropic film
   int cosine_step = 1, phi_step = 1;
 
  private:

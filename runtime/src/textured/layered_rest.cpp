@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "runtime/src/base/compiler.h"
 #include "runtime/src/base/exp4.h"
 #include "runtime/src/rest/textured_media.h"
 
@@ -17,14 +18,10 @@ Color4 least_reflectance(const Wavelengths& wavelengths) {
   return Color4{};
 }
 
-Axis linear(Axis axis) {
-  axis.is_cubic = false;
-  return axis;
-}
-
-int nearest(const BoundAxis::Taps& taps) {
-  const auto most = std::max_element(taps.weight.begin(), taps.weight.begin() + taps.count);
-  return taps.offset[static_cast<std::size_t>(most - taps.weight.begin())];
+// Of the four nodes around x, which counts from the first.
+std::array<float, 4> cubic_weights(float x) {
+  const float a = x - 1, b = x - 2, c = x - 3;
+  return {a * b * c / -6, x * b * c / 2, x * a * c / -2, x * a * b / 6};
 }
 
 }  // namespace
@@ -33,23 +30,46 @@ LayeredRest::LayeredRest(const Table& table)
     : grid_(table),
       absorption_(mean_absorption(table.factors.wavelengths)),
       pigment_thickness_nm_(table.material.pigment_thickness_nm),
-      cubic_thickness_(grid_.axes[0], grid_.axes[1].size()),
-      linear_thickness_(linear(grid_.axes[0]), grid_.axes[1].size()),
       base_ior_(grid_.axes[1], 1),
-      absorptions_(grid_.axes[2], 1),
       least_(least_reflectance(table.factors.wavelengths)),
       arrays_(table, grid_, absorption_) {}
 
 LayeredRest::Point LayeredRest::point(const Parameters& at) const {
-  const BoundAxis::Taps d = linear_thickness_.at(at.film_thickness_nm), n = base_ior_.at(at.base_ior),
-                        s = absorptions_.at(at.absorption_per_nm);
-  return {{cubic_thickness_.at(at.film_thickness_nm), n},
-          {d, n},
-          s.offset[0],
-          s.count > 1 ? s.weight[1] : 0,
-          nearest(d) + nearest(n),
-          nearest(s),
-          static_cast<float>((at.absorption_per_nm - grid_.axes[2].nodes.front()) * pigment_thickness_nm_)};
+  Point point;
+  BoundAxis::Taps n{1, {}, {1}};
+  const int iors = static_cast<int>(grid_.axes[1].size()), thicknesses = grid_.points() / iors;
+  if (iors > 1) n = base_ior_.at(at.base_ior);
+  point.nearest = n.offset[n.count > 1 && n.weight[1] > 0.5f ? 1 : 0];
+  if (thicknesses == 1) {
+    for (int j = 0; j < n.count; ++j) {
+      point.cubic.add(n.offset[j], n.weight[j]);
+      point.linear.add(n.offset[j], n.weight[j]);
+    }
+  } else {
+    const EvenPosition d = grid_.even[0].locate(at.film_thickness_nm);
+    const int first = std::clamp(d.lower - 1, 0, thicknesses - 4);
+    const auto weights = cubic_weights(static_cast<float>(d.lower - first) + d.upper_weight);
+    for (int j = 0; j < n.count; ++j) {
+      for (int i = 0; i < 4; ++i) point.cubic.add((first + i) * iors + n.offset[j], weights[i] * n.weight[j]);
+      point.linear.add(d.lower * iors + n.offset[j], (1 - d.upper_weight) * n.weight[j]);
+      point.linear.add((d.lower + 1) * iors + n.offset[j], d.upper_weight * n.weight[j]);
+    }
+    point.nearest += (d.lower + (d.upper_weight > 0.5f ? 1 : 0)) * iors;
+  }
+  take_absorption(at.absorption_per_nm, point);
+  return point;
+}
+
+void LayeredRest::take_absorption(double absorption_per_nm, Point& point) const {
+  point.absorption = point.nearest_absorption = 0;
+  point.upper_absorption = 0;
+  point.beyond =
+      static_cast<float>((absorption_per_nm - grid_.axes[2].nodes.front()) * pigment_thickness_nm_);
+  if (grid_.absorptions() == 1) return;
+  const EvenPosition s = grid_.even[2].locate(absorption_per_nm);
+  point.absorption = s.lower;
+  point.upper_absorption = s.upper_weight;
+  point.nearest_absorption = s.lower + (s.upper_weight > 0.5f ? 1 : 0);
 }
 
 Color4 LayeredRest::reflectance(const Point& at, float cosine) const {
@@ -130,26 +150,34 @@ LayeredRest::PairTaps LayeredRest::taps(const End& end) const {
   return taps;
 }
 
-Color4 LayeredRest::exchange(const Point& at, const End& o, const End& i) const {
+LayeredRest::PairRows LayeredRest::pair_rows(const Point& at, const End& o, const End& i) const {
   const PairTaps of_o = taps(o), of_i = taps(i);
   const int ends = grid_.ends(), absorptions = grid_.absorptions() == 1 ? 1 : 2;
-  Color4 sum{};
-  for (int s = 0; s < absorptions; ++s) {
-    const float upper = s == 1 ? at.upper_absorption : 1 - at.upper_absorption;
-    Color4 of_absorption{};
+  PairRows rows;
+  rows.taps = of_i.count;
+  rows.node = of_i.node;
+  rows.node_weight = of_i.weight;
+  for (int s = 0; s < absorptions; ++s)
     for (int k = 0; k < at.linear.count; ++k) {
       const auto node = static_cast<std::size_t>(at.linear.node[k] * grid_.absorptions() + at.absorption + s);
       const Color4* pairs = arrays_.pairs.data() + node * static_cast<std::size_t>(ends * ends);
-      Color4 of_point{};
+      const float weight = at.linear.weight[k] * (s == 1 ? at.upper_absorption : 1 - at.upper_absorption);
       for (int a = 0; a < of_o.count; ++a) {
         const Color4* row = pairs + of_o.node[a] * ends;
-        Color4 of_row{};
-        for (int b = 0; b < of_i.count; ++b) of_row += of_i.weight[b] * row[of_i.node[b]];
-        of_point += of_o.weight[a] * of_row;
+        for (int b = 0; b < of_i.count; b += 2) prefetch(row + of_i.node[b]);
+        rows.row[rows.count] = row;
+        rows.weight[rows.count++] = weight * of_o.weight[a];
       }
-      of_absorption += at.linear.weight[k] * of_point;
     }
-    sum += upper * of_absorption;
+  return rows;
+}
+
+Color4 LayeredRest::exchange(const PairRows& rows) {
+  Color4 sum{};
+  for (int b = 0; b < rows.taps; ++b) {
+    Color4 of_node{};
+    for (int k = 0; k < rows.count; ++k) of_node += rows.weight[k] * rows.row[k][rows.node[b]];
+    sum += rows.node_weight[b] * of_node;
   }
   return sum;
 }

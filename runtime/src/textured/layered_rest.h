@@ -17,12 +17,9 @@ class LayeredRest {
   // Says where parameters lie among the nodes.
   template <int kMost>
   struct Neighbours {
-    Neighbours(const BoundAxis::Taps& thickness, const BoundAxis::Taps& base_ior) {
-      for (int i = 0; i < thickness.count; ++i)
-        for (int j = 0; j < base_ior.count; ++j) {
-          node[count] = thickness.offset[i] + base_ior.offset[j];
-          weight[count++] = thickness.weight[i] * base_ior.weight[j];
-        }
+    void add(int at, float by) {
+      node[count] = at;
+      weight[count++] = by;
     }
     int count = 0;
     std::array<int, kMost> node;
@@ -48,15 +45,24 @@ class LayeredRest {
   Color4 reflectance(const Point& at, float cosine) const;
   // Returns B.
   Color4 factor(const Point& at, const End& w) const;
+  // Says where X of a pair lies. It is asked for at once, to work meanwhile.
+  struct PairRows {
+    int count = 0, taps = 0;
+    std::array<const Color4*, 32> row;
+    std::array<float, 32> weight;
+    std::array<int, 4> node;  // in each row, and its weight
+    std::array<float, 4> node_weight;
+  };
+  PairRows pair_rows(const Point& at, const End& o, const End& i) const;
   // Returns X.
-  Color4 exchange(const Point& at, const End& o, const End& i) const;
+  static Color4 exchange(const PairRows& rows);
   // Returns the chance of sampling the first surface, from the nearest parameters.
   float first_chance(const Point& at, const End& w) const;
 
   bool has_rest() const { return grid_.has_rest; }
   bool is_product() const { return grid_.is_product; }
   const Color4& absorption() const { return absorption_; }
-  const EvenAxis& axis(std::size_t k) const { return grid_.limits[k]; }
+  const EvenAxis& axis(std::size_t k) const { return grid_.even[k]; }
   std::size_t bytes() const { return arrays_.bytes(); }
 
  private:
@@ -66,13 +72,14 @@ class LayeredRest {
     int count;
   };
   PairTaps taps(const End& end) const;
+  void take_absorption(double absorption_per_nm, Point& point) const;
   Color4 share(const Point& at, const End& w) const;
   Color4 log(const Point& at, const End& w) const;
 
   LayeredGrid grid_;
   Color4 absorption_;  // a of each channel, and their mean
   double pigment_thickness_nm_;
-  BoundAxis cubic_thickness_, linear_thickness_, base_ior_, absorptions_;
+  BoundAxis base_ior_;
   Color4 least_;  // of R: folded colours may be negative
   LayeredArrays arrays_;
 };

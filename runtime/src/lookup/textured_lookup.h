@@ -220,7 +220,7 @@ class TexturedLookup<TexturedKind::layered> {
     }
     FacetViewer facets;
     LayeredRest::End end;
-    Color4 factor{};  // B
+    LayeredRest::Factor factor;
     float first_chance;
   };
 
@@ -248,7 +248,7 @@ class TexturedLookup<TexturedKind::layered> {
   Color4 rest(const Viewer& viewer, const LayeredRest::End& i, const Vec3& wo, const Vec3& wi) const {
     const LayeredRest& layered = *data_.layered;
     const LayeredRest::PairRows rows = layered.pair_rows(point_, viewer.end, i);
-    const Color4 factors = viewer.factor * layered.factor(point_, i);
+    const Color4 factors = layered.product(viewer.factor, layered.factor(point_, i));
     Color4 bracket = LayeredRest::exchange(rows);
     if (layered.is_product()) bracket += TexturedData::one_visit(at_.pigment_, layered.absorption(), wo, wi);
     return factors * bracket;

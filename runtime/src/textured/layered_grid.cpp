@@ -17,7 +17,7 @@ constexpr int kMostCosines = 257, kLeastCosines = 33;
 constexpr int kPhis = 7, kPhiStep = 3;  // of an anisotropic film
 constexpr int kAbsorptions = 12;
 constexpr int kThicknesses = 8, kMostThicknesses = 512;  // intervals
-constexpr int kBaseIors = 4, kMostBaseIors = 16;
+constexpr int kBaseIors = 8, kMostBaseIors = 16;
 constexpr double kPerFringe = 2;        // intervals to begin with, of the shortest wavelength
 constexpr double kMostError = 1e-3;     // between nodes, of what the film reflects and lets through
 constexpr double kMostFilmBytes = 8e6;  // of R, and of P

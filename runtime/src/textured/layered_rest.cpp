@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "runtime/src/base/compiler.h"
-#include "runtime/src/base/exp4.h"
 #include "runtime/src/rest/textured_media.h"
 
 namespace sunbeam {
@@ -119,10 +118,9 @@ Color4 LayeredRest::log(const Point& at, const End& w) const {
   return sum;
 }
 
-Color4 LayeredRest::factor(const Point& at, const End& w) const {
-  const Color4 share = this->share(at, w);
-  if (grid_.absorptions() == 1) return share;
-  return share * exp4(log(at, w) - (at.beyond * w.per_pigment_cosine) * absorption_);
+LayeredRest::Factor LayeredRest::factor(const Point& at, const End& w) const {
+  if (grid_.absorptions() == 1) return {share(at, w), Color4{}};
+  return {share(at, w), log(at, w) - (at.beyond * w.per_pigment_cosine) * absorption_};
 }
 
 float LayeredRest::first_chance(const Point& at, const End& w) const {

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "runtime/src/base/bound_axis.h"
+#include "runtime/src/base/exp4.h"
 #include "runtime/src/textured/layered_arrays.h"
 
 namespace sunbeam {
@@ -43,8 +44,16 @@ class LayeredRest {
 
   // Returns R of a cosine.
   Color4 reflectance(const Point& at, float cosine) const;
-  // Returns B.
-  Color4 factor(const Point& at, const End& w) const;
+  // Holds P, and the exponent of B over it.
+  struct Factor {
+    Color4 share{}, log{};
+  };
+  Factor factor(const Point& at, const End& w) const;
+  // Returns B B.
+  Color4 product(const Factor& o, const Factor& i) const {
+    return grid_.absorptions() == 1 ? o.share * i.share : o.share * i.share * exp4(o.log + i.log);
+  }
+
   // Says where X of a pair lies. It is asked for at once, to work meanwhile.
   struct PairRows {
     int count = 0, taps = 0;

@@ -47,13 +47,13 @@ flip() {
   awk '$1 == "flip" { printf "%.4f", $2 }' "$work/log"
 }
 
-# The skin by table and twice live, by PFMC: NAME_table, NAME_live and NAME_noise with their FLIP, NAME_flip.png of table against live
+# The skin by table and twice live, by PFMC unless $estimator says otherwise: NAME_table, NAME_live and NAME_noise with their FLIP, NAME_flip.png of table against live
 # and NAME_noise_flip.png of live against live; a row of numbers_FIGURE.md.
 both() {
   local name=$1 scene=$2 table=$3 floor error
   render "${name}_table" "$scene" "$cell" "$samples" --table "$table" "${@:4}"
-  render "${name}_live" "$scene" "$cell" "$samples" --material live --estimator pfmc --seed 2 "${@:4}"
-  render "${name}_noise" "$scene" "$cell" "$samples" --material live --estimator pfmc --seed 3 "${@:4}"
+  render "${name}_live" "$scene" "$cell" "$samples" --material live --estimator "${estimator:-pfmc}" --seed 2 "${@:4}"
+  render "${name}_noise" "$scene" "$cell" "$samples" --material live --estimator "${estimator:-pfmc}" --seed 3 "${@:4}"
   floor=$(flip "${name}_noise" "${name}_noise" "${name}_live")
   error=$(flip "$name" "${name}_table" "${name}_live")
   awk -v name="$name" -v error="$error" -v floor="$floor" '
@@ -182,24 +182,31 @@ look() {
   echo "$scene"
 }
 
-# oxides NAME NM...: balls of the recipe NAME with films of these thicknesses.
+# bake_look RECIPE: the table of this shipped recipe.
+bake_look() { bake "$work/table_$1.exr" "tables/recipes/$1.toml"; }
+
+# oxides NAME NM...: balls of the table NAME with films of these thicknesses.
 oxides() {
   local name=$1 nm
   for nm in "${@:2}"; do
-    render "${name}_$nm" "$(look "tables/recipes/$name.toml")" 104x104 256 --material live --set "material[0].film_thickness_nm=$nm"
+    render "${name}_$nm" "$(look "tables/recipes/$name.toml")" 104x104 256 --table "$work/table_$name.exr" --set "material[0].film_thickness_nm=$nm"
   done
 }
 
-# Films of layers, live: six looks, oxides that grow on titanium and on steel, platelets of ever less even thickness.
+# Films of layers: six looks by table and live, oxides that grow on titanium and on steel, platelets of ever less even thickness (live).
 films() {
-  local name spread spreads='0 0.05 0.1 0.2 0.3'
+  local name scene spread spreads='0 0.05 0.1 0.2 0.3' cell=220x220 samples=320 estimator=exact
   /usr/bin/python3 docs/film_scenes.py "$work" ../../tables/recipes
-  render look_chrysochroa "$work/beetle.toml" 220x220 320 --material live
-  render look_oil "$work/slick.toml" 220x220 512 --material live
-  for name in morpho nacre titanium steel; do
-    render "look_$name" "$(look "tables/recipes/$name.toml")" 220x220 320 --material live
+  for name in chrysochroa morpho nacre titanium steel oil; do
+    bake_look "$name"
+    case $name in
+      chrysochroa) scene=$work/beetle.toml ;;
+      oil) scene=$work/slick.toml ;;
+      *) scene=$(look "tables/recipes/$name.toml") ;;
+    esac
+    both "look_$name" "$scene" "$work/table_$name.exr"
   done
-  montage films 3 $(pngs look_{chrysochroa,morpho,nacre,titanium,steel,oil})
+  montage films 3 $(pngs look_{chrysochroa,morpho,nacre,titanium,steel,oil}_table)
 
   oxides titanium 24 40 48 64 110 140 192
   montage titanium 7 --top '24 gold|40 purple|48 blue|64 light blue|110 yellow|140 pink|192 green' $(pngs titanium_{24,40,48,64,110,140,192})

@@ -15,7 +15,7 @@ constexpr double kMostError = 2e-3;   // of V
 constexpr double kSameAlbedo = 1e-6;  // as good as grey
 constexpr std::size_t kLeastAlbedoNodes = 3, kMostAlbedoNodes = 16;
 constexpr double kMiddleNm = 510;
-constexpr std::size_t kDispersiveNodes = 5;
+constexpr std::size_t kLeastDispersiveNodes = 2, kMostDispersiveNodes = 8;
 constexpr std::size_t kLeastFringeNodes = 6, kMostFringeNodes = 4096;
 constexpr double kLeastNodesPerFringe = 3, kMostNodesPerFringe = 32;
 constexpr double kMostOrderOfSpread = 100;  // StackSpectrum takes no more
@@ -163,12 +163,41 @@ Axis albedos_axis(const Wavelengths& w, double returned) {
   return axis;
 }
 
-Axis wavelengths_axis(const Wavelengths& w) {
+Film film_at(const Recipe& recipe, double nm) {
+  return {recipe.material, recipe.spectrum.monochromatic(recipe.material, nm)};
+}
+
+// The largest relative error of V between wavelengths, at some orders.
+double wavelength_error(const Recipe& recipe, const Axis& wavelengths, std::span<const double> orders,
+                        double albedo) {
+  const GaussRule rule = gauss_legendre(24);
+  std::vector<std::vector<double>> rho;
+  for (const double nm : wavelengths.nodes) rho.push_back(returned(film_at(recipe, nm), rule, orders));
+  double worst = 0;
+  for (std::size_t k = 0; k + 1 < wavelengths.size(); ++k) {
+    const double nm = (wavelengths.nodes[k] + wavelengths.nodes[k + 1]) / 2;
+    const auto exact = returned(film_at(recipe, nm), rule, orders);
+    for (std::size_t j = 0; j < orders.size(); ++j) {
+      std::vector<double> v;
+      for (const std::vector<double>& at_node : rho) v.push_back(visits(albedo, at_node[j]));
+      worst = std::max(worst, std::abs(interpolated(wavelengths, v, nm) / visits(albedo, exact[j]) - 1));
+    }
+  }
+  return worst;
+}
+
+Axis wavelengths_axis(const Recipe& recipe, const Wavelengths& w, const Range& orders, double albedo) {
+  constexpr std::size_t kOrders = 33;
   const Range range = range_of(w.nm);
   Axis axis{"wavelength_nm", "nm", {std::clamp(kMiddleNm, range.low, range.high)}};
-  if (is_dispersive(w) && range.high > range.low)
-    axis.nodes = spaced_nodes(range.low, range.high, kDispersiveNodes);
-  return cubic(axis);
+  if (!is_dispersive(w) || range.high == range.low) return axis;
+  const auto trials = spaced_nodes(orders.low, orders.high, orders.high > orders.low ? kOrders : 1);
+  for (std::size_t count = kLeastDispersiveNodes; count <= kMostDispersiveNodes; ++count) {
+    axis.nodes = spaced_nodes(range.low, range.high, count);
+    axis = cubic(axis);
+    if (wavelength_error(recipe, axis, trials, albedo) <= kMostError) break;
+  }
+  return axis;
 }
 
 // The films at the ends of the axes.
@@ -199,10 +228,10 @@ bool is_dispersive(const Wavelengths& w) {
 
 ExchangeAxes exchange_axes(const Recipe& recipe, const Wavelengths& w, double least_depth) {
   ExchangeAxes axes;
-  axes.wavelength = wavelengths_axis(w);
   const Range range = orders_of(recipe, w);
   const double albedo = range_of(w.albedo).high, passing = std::exp(-least_depth),
                fringes = range.high - range.low;
+  axes.wavelength = wavelengths_axis(recipe, w, range, albedo);
   const std::vector<Film> films = films_of(recipe, axes.wavelength);
   const GaussRule rule = resolving_rule(films, range);
   double most_returned = 0;

@@ -101,7 +101,8 @@ TEST(ExchangeAxes, AskForNodesWhereTheyTell) {
   EXPECT_GT(bright["albedo"], dark["albedo"]);
   EXPECT_EQ(dark["albedo"], 3u);
   EXPECT_EQ(dark["wavelength_nm"], 1u);
-  EXPECT_EQ(nodes_of("0.3", dispersive)["wavelength_nm"], 5u);
+  EXPECT_GT(nodes_of("0.3", dispersive)["wavelength_nm"], 1u);
+  EXPECT_GE(nodes_of("0.95", dispersive)["wavelength_nm"], nodes_of("0.3", dispersive)["wavelength_nm"]);
   EXPECT_EQ(nodes_of("0.3", dispersive)["albedo"], 1u);
 }
 

@@ -24,7 +24,7 @@ struct LayeredGrid {
   std::size_t share_cells() const { return has_rest ? count(points(), phis, cosines) : 0; }
 
   // L is (point, absorption, azimuth, cosine), with fewer cosines. A column is a direction of it.
-  static constexpr int kLogCosines = 25;
+  static constexpr int kLogCosines = 49;
   int columns() const { return phis * kLogCosines; }
   double cosine_of_column(int column) const {
     return static_cast<double>(column % kLogCosines) / (kLogCosines - 1);

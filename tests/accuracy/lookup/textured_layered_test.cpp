@@ -61,7 +61,7 @@ TEST_P(TexturedLayeredTables, AgreeWithBoundTables) {
   RecordProperty("p99", std::to_string(p99));
 }
 
-// R, P and X have 8 MB each; L has about as little.
+// R and P have up to 8 MB each, X up to 12.
 TEST_P(TexturedLayeredTables, TakeLittleMemory) { EXPECT_LT(textured().bytes(), 32e6); }
 
 // False alarm 1e-3 in all.

@@ -21,7 +21,7 @@ constexpr int kBaseIors = 8, kMostBaseIors = 16;
 constexpr double kPerFringe = 2;        // intervals to begin with, of the shortest wavelength
 constexpr double kMostError = 1e-3;     // between nodes, of what the film reflects and lets through
 constexpr double kMostFilmBytes = 8e6;  // of R, and of P
-constexpr double kMostPairBytes = 12e6;
+constexpr double kMostPairBytes = 12e6, kMostPairBytesByAbsorption = 6e6;  // look-ups read twice as many
 #ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
 constexpr double kMostSeconds = 1;
 #else
@@ -167,9 +167,9 @@ void LayeredGrid::fit_memory() {
   while (cosines > kLeastCosines && bytes_of(std::max(film_cells(), share_cells())) > kMostFilmBytes)
     cosines = (cosines - 1) / 2 + 1;
   if (phis > 1) phi_step = kPhiStep;
-  for (const int step : {1, 2, 4, 8}) {
+  for (const int step : {1, 2, 4, 6, 8}) {
     cosine_step = step;
-    if (bytes_of(pair_cells()) <= kMostPairBytes) break;
+    if (bytes_of(pair_cells()) <= (absorptions() == 1 ? kMostPairBytes : kMostPairBytesByAbsorption)) break;
   }
   const double bytes = bytes_of(film_cells() + share_cells() + log_cells() + pair_cells()),
                most = static_cast<double>(4 * read_limit(0));

@@ -5,14 +5,17 @@ live pictures: in FLIP, and in the mean of each channel, where noise alone is be
 8000 runs of all looks. Random numbers are those of a seed, so that a run repeats."""
 
 import json
+import re
 import unittest
 
 import support
 
+# With such a tolerance bakes check their tables by walks, which take less time.
+BY_WALKS = ("--set", "accuracy.tolerance_median=0.01")
 SIZE = ("--size", "48x48", "--spp", "64")
 
-# Nacre has three of its twelve platelets, because exact evaluation of all takes long.
-LOOKS = {"chrysochroa": (), "morpho": (), "nacre": ("--set", "material.film_periods=3"), "titanium": (), "steel": (), "oil": ()}
+# Nacre has two of its twelve platelets, because exact evaluation of all takes long.
+LOOKS = {"chrysochroa": "", "morpho": "", "nacre": "film_periods = 2", "titanium": "", "steel": "", "oil": ""}
 
 
 class FilmLooks(support.CliTest):
@@ -27,12 +30,8 @@ class FilmLooks(support.CliTest):
         for look, change in LOOKS.items():
             with self.subTest(look=look):
                 recipe = (support.SOURCE_DIR / f"tables/recipes/{look}.toml").read_text()
-                for option in change[1:]:
-                    key, value = option.removeprefix("material.").split("=")
-                    recipe = "".join(f"{key} = {value}\n" if line.startswith(key + " ") else line
-                                     for line in recipe.splitlines(keepends=True))
-                self.write("look.toml", recipe)
-                self.succeed("bake", "look.toml", "-o", "look.exr", "--preview")
+                self.write("look.toml", re.sub(r"film_periods = \d+", change, recipe) if change else recipe)
+                self.succeed("bake", "look.toml", "-o", "look.exr", "--preview", *BY_WALKS)
                 self.write("scene.toml", scene.replace("../recipes/titanium.toml", "look.toml"))
                 self.render("table.exr", "--table", "look.exr")
                 for seed in (2, 3):

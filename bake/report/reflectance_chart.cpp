@@ -21,8 +21,9 @@ std::pair<double, double> thickness_range(const Axis& axis) {
 
 Image color_map(const Table& table, Parameters parameters) {
   const auto [low, high] = thickness_range(table.parameter_axis(0));
+  const int different = table.parameter_axis(0).size() > 1 ? kColumns : 1;
   Image image(kColumns, kRows);
-  run_parallel_tasks(kColumns, 0, {}, [&](std::size_t column) {
+  run_parallel_tasks(static_cast<std::size_t>(different), 0, {}, [&](std::size_t column) {
     Parameters at = parameters;
     at.film_thickness_nm = lerp((static_cast<double>(column) + 0.5) / kColumns, low, high);
     const TableAppearance film(table, at, OutsideGrid::clamp);
@@ -30,6 +31,8 @@ Image color_map(const Table& table, Parameters parameters) {
       image.set(static_cast<int>(column), y,
                 film.film_reflectance(std::cos((1 - (y + 0.5) / kRows) * kPi / 2)));
   });
+  for (int column = different; column < kColumns; ++column)
+    for (int y = 0; y < kRows; ++y) image.set(column, y, image.get(0, y));
   return image;
 }
 

@@ -18,7 +18,7 @@ constexpr double kLeastAngle = 1e-5;  // a ring has no facets at 0, and none are
 std::vector<double> crossing_values(const Material& material, const VisibleFacets& facets,
                                     std::span<const double> cosines, std::span<const double> depths) {
   const FilmGeometry film(material);
-  const double per_m = 1 / arrival_cosine(material, facets.w().z);
+  const double per_m = 1 / crossing_cosine(material, facets.w().z);
   const double end = std::acos(critical_cosine(film.index_ratio(), 1)) - kLeastAngle;
   std::vector<double> values(depths.size() * cosines.size());
   for (std::size_t j = 0; j < cosines.size(); ++j) {

@@ -129,7 +129,7 @@ void LayeredWaves::let_pass(double cosine, double* transmittance) const {
 
 LayeredWaves::Passage LayeredWaves::passage(double cosine, double phi) const {
   Passage w;
-  w.per_pigment_cosine = 1 / arrival_cosine(material_, cosine);
+  w.per_pigment_cosine = 1 / crossing_cosine(material_, cosine);
   if (crossing_.empty()) {
     w.weight = {1};
     w.transmittance.resize(size());

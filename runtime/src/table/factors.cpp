@@ -1,5 +1,7 @@
 #include "sunbeam/detail/factors.h"
 
+#include "sunbeam/detail/refraction.h"
+
 namespace sunbeam {
 inline namespace v1 {
 namespace {
@@ -20,6 +22,18 @@ double arrival_cosine(const Material& material, double cosine) {
   const double below = std::max(material.cosine_below(cosine), kLeastCosineBelow);
   if (material.is_smooth() || material.transmission == Transmission::straight) return below;
   return std::hypot(below, 0.3 * std::max(material.roughness.u, material.roughness.v));
+}
+
+// The square of m, below 0 beyond the critical angle, goes on as a hyperbola that bends where facets blur it:
+// they turn light by their roughness, and 2 critical is the slope of it there.
+double crossing_cosine(const Material& material, double cosine) {
+  const double critical = critical_cosine(material.exterior_ior, material.base_ior);
+  if (critical == 0 || material.is_smooth() || material.transmission == Transmission::straight)
+    return arrival_cosine(material, cosine);
+  const double roughness = std::max(material.roughness.u, material.roughness.v);
+  const double squared = refracted_cosine_squared(material.exterior_ior, material.base_ior, cosine);
+  const double rounded = (squared + std::hypot(squared, 2 * critical * roughness)) / 2;
+  return std::sqrt(rounded + square(0.3 * roughness));
 }
 
 double one_visit_of_product(double optical_depth, double m_i, double m_o) {

@@ -28,7 +28,7 @@
 //
 // where the second pair is of facets that diffuse light meets from below. `crossing` is ln of the mean, over
 // the facets of that c', of share exp(-tau/m), plus tau/m~. Since indices may depend on the wavelength,
-// `exchange` of a layered film has it as an axis.
+// `exchange` of a layered film has it as an axis. This m~ is crossing_cosine().
 //
 // fringe_order = 2 n1 d cos_1 / lambda, the phase between successive reflections in the film over 2 pi, at
 // the direction itself for `arrival`, at normal incidence for the other two. At a fixed order A varies slowly
@@ -84,6 +84,11 @@ double fringe_order(const Material& material, double cosine);
 
 // Returns m~, which is explained above.
 double arrival_cosine(const Material& material, double cosine);
+
+// Returns m~ of `crossing`. Beyond the critical angle m is 0, and m~ would have a knee that no node of theta
+// lies at; there it is rounded over the angle of the roughness. Over a base that is denser than the exterior
+// it is arrival_cosine().
+double crossing_cosine(const Material& material, double cosine);
 
 // Returns exp(tau (1/m_i + 1/m_o - 1/(m_i m_o))), which is at most exp(tau).
 double one_visit_of_product(double optical_depth, double m_i, double m_o);

@@ -51,7 +51,7 @@ std::vector<Surface> surfaces() {
 std::vector<double> crossing_power(const Material& material, const VisibleFacets& facets,
                                    const test::BinnedRanks& ranks) {
   const auto values = crossing_values(material, facets, facets.cosines(ranks.nodes), kDepths);
-  const double per_m = 1 / arrival_cosine(material, facets.w().z);
+  const double per_m = 1 / crossing_cosine(material, facets.w().z);
   return ranks.sums([&](std::size_t t, std::size_t j) {
     return std::exp(values[t * ranks.nodes.size() + j] - kDepths[t] * per_m);
   });

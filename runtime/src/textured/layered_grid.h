@@ -3,6 +3,7 @@
 #pragma once
 
 #include "runtime/src/base/even_axis.h"
+#include "runtime/src/textured/knee_cosines.h"
 #include "sunbeam/table.h"
 
 namespace sunbeam {
@@ -19,6 +20,10 @@ struct LayeredGrid {
 
   // R is (point, cosine), P is (point, azimuth, cosine); cosines are even.
   double cosine(int c) const { return static_cast<double>(c) / (cosines - 1); }
+  // Those of R and P are even in their place.
+  KneeCosines knee(double base_ior) const {
+    return has_knee ? KneeCosines(exterior_ior, base_ior) : KneeCosines();
+  }
   double phi(int p) const { return phis == 1 ? 0 : kPi / 2 * p / (phis - 1); }
   std::size_t film_cells() const { return count(points(), cosines); }
   std::size_t share_cells() const { return has_rest ? count(points(), phis, cosines) : 0; }
@@ -44,7 +49,9 @@ struct LayeredGrid {
   std::array<Axis, 3> axes;      // nodes of the parameters
   std::array<EvenAxis, 3> even;  // their ranges; the nodes of thickness and absorption are these
   bool has_rest, is_product;     // nothing lies below the film on an opaque base
-  int cosines, phis;             // even azimuths in a quadrant; 1 for an isotropic film
+  bool has_knee;                 // base IORs span a range that begins below the exterior's
+  double exterior_ior;
+  int cosines, phis;  // even azimuths in a quadrant; 1 for an isotropic film
   int cosine_step = 1, phi_step = 1;
 
  private:

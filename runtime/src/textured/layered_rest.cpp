@@ -35,6 +35,7 @@ LayeredRest::LayeredRest(const Table& table)
 
 LayeredRest::Point LayeredRest::point(const Parameters& at) const {
   Point point;
+  point.knee = grid_.knee(at.base_ior);
   BoundAxis::Taps n{1, {}, {1}};
   const int iors = static_cast<int>(grid_.axes[1].size()), thicknesses = grid_.points() / iors;
   if (iors > 1) n = base_ior_.at(at.base_ior);
@@ -72,7 +73,7 @@ void LayeredRest::take_absorption(double absorption_per_nm, Point& point) const 
 }
 
 Color4 LayeredRest::reflectance(const Point& at, float cosine) const {
-  const EvenPosition c(cosine, grid_.cosines);
+  const EvenPosition c(at.knee.place(cosine), grid_.cosines);
   Color4 low{}, high{};
   for (int k = 0; k < at.cubic.count; ++k) {
     const Color4* row = arrays_.film.data() + at.cubic.node[k] * grid_.cosines + c.lower;
@@ -83,7 +84,7 @@ Color4 LayeredRest::reflectance(const Point& at, float cosine) const {
 }
 
 Color4 LayeredRest::share(const Point& at, const End& w) const {
-  const EvenPosition c(w.cosine, grid_.cosines), p(w.phi, grid_.phis);
+  const EvenPosition c(at.knee.place(w.cosine), grid_.cosines), p(w.phi, grid_.phis);
   const int azimuths = grid_.phis == 1 ? 1 : 2;
   Color4 sum{};
   for (int a = 0; a < azimuths; ++a) {

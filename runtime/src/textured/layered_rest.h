@@ -34,6 +34,7 @@ class LayeredRest {
     float upper_absorption;           // and the weight of the upper one
     int nearest, nearest_absorption;  // neighbour
     float beyond;                     // the optical depth above the least of the grid
+    KneeCosines knee;                 // says where the cosines of R and P lie
   };
   Point point(const Parameters& at) const;
 

@@ -115,8 +115,8 @@ class RandomLayeredRecipes : private Draws {
   std::string draw_base() {
     if (kind_ == FilmKind::metal) return draw_metal();
     is_base_constant_ = kind_ != FilmKind::dispersive || chance(0.5);
-    std::string text =
-        is_base_constant_ ? line("base_ior", between(1.2, 1.9)) : line("base_ior", draw_clear_base());
+    std::string text = is_base_constant_ ? line("base_ior", between(1.2, exterior_ior_ > 1 ? 1.5 : 1.9))
+                                         : line("base_ior", draw_clear_base());
     optical_depth_ = chance(0.3) ? 0 : between(0, is_product_ ? 0.3 : 1);
     return text + line("absorption_path", is_product_ ? "\"product\"" : "\"sum\"") +
            line("absorption_per_nm", optical_depth_ / kPigmentNm) + line("pigment_thickness_nm", kPigmentNm) +

@@ -42,8 +42,8 @@
 //
 // with the positive part of each weight in the fold of B, so that no channel of it passes through 0. Nodes of
 // thickness and base IOR are as many as the film's error between them asks for. R and P are cubic in the
-// thickness; all else is linear, over even cosines too; but where base IORs
-// span a range that begins below the exterior's, R and P have an eighth of their nodes up to the critical
+// thickness; all else is linear, over even cosines too; but where some
+// base IOR lies below the exterior's, R and P have an eighth of their nodes up to the critical
 // cosine of their base IOR. An opaque base leaves R alone.
 //
 // sample mixes bounded visible normals (ggx.h; for a smooth film its mirror direction, a Dirac), and for the

@@ -1,8 +1,8 @@
 // This file says at which cosines a textured table whose film is layered holds R and P
 // (sunbeam/textured_table.h). Over a base of lower index than the exterior both have a knee at the cosine of
-// total reflection, a blunt one if the film is rough. Where base IORs span a range that begins there, that
-// cosine moves with them, and a value between two of them would have two knees. So the cosines up to it have
-// a share of the nodes of their own, and it lies at the same node for all.
+// total reflection, a blunt one if the film is rough, which moves with the base IOR. So where some base IOR
+// is that low, the cosines up to it have a share of the nodes of their own, and it lies at the same node for
+// all.
 #pragma once
 
 #include "sunbeam/detail/refraction.h"

@@ -156,7 +156,7 @@ LayeredGrid::LayeredGrid(const Table& table)
            even_axis(table.factors.grid[2], axes[2])},
       has_rest(!table.material.is_opaque()),
       is_product(has_rest && !table.factors.exchange.empty()),
-      has_knee(axes[1].size() > 1 && reaches_below(table)),
+      has_knee(has_rest && reaches_below(table)),
       exterior_ior(table.material.exterior_ior),
       cosines(kMostCosines),
       phis(table.symmetry == Symmetry::isotropic ? 1 : kPhis) {

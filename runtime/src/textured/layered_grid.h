@@ -49,7 +49,7 @@ struct LayeredGrid {
   std::array<Axis, 3> axes;      // nodes of the parameters
   std::array<EvenAxis, 3> even;  // their ranges; the nodes of thickness and absorption are these
   bool has_rest, is_product;     // nothing lies below the film on an opaque base
-  bool has_knee;                 // base IORs span a range that begins below the exterior's
+  bool has_knee;                 // some base IOR lies below the exterior's
   double exterior_ior;
   int cosines, phis;  // even azimuths in a quadrant; 1 for an isotropic film
   int cosine_step = 1, phi_step = 1;

@@ -73,12 +73,13 @@ class LayeredJob : public BakeJob {
   // c' at all ranks, then the values of `crossing` at (base_ior, optical_depth, facet_rank).
   Block crossing(const Vec3& w) const {
     const std::vector<Axis>& axes = bake_.shapes.crossing.axes();
+    const Roughness& roughness = bake_.recipe.material.roughness;
+    const std::vector<double> cosines = VisibleFacets(w, roughness, 1).cosines(axes[4].nodes);
     Block block;
+    append(block.values, std::span<const double>(cosines));
     for (std::size_t ior = 0; ior < bake_.iors(); ++ior) {
       const Material material = bake_.material_at(ior);
-      const VisibleFacets facets(w, material.roughness, bending_index_ratio(material));
-      const std::vector<double> cosines = facets.cosines(axes[4].nodes);
-      if (ior == 0) append(block.values, std::span<const double>(cosines));
+      const VisibleFacets facets(w, roughness, bending_index_ratio(material));
       const auto values = crossing_values(material, facets, cosines, axes[1].nodes);
       append(block.values, std::span<const double>(values));
     }

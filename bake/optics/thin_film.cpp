@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "sunbeam/detail/vector_clones.h"
+#include "runtime/src/base/vector_clones.h"
 
 namespace sunbeam {
 namespace {

@@ -3,9 +3,9 @@
 #include <limits>
 #include <set>
 
+#include "runtime/src/base/vector_clones.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/text.h"
-#include "sunbeam/detail/vector_clones.h"
 
 namespace sunbeam {
 namespace {

@@ -5,10 +5,10 @@
 #include <numeric>
 
 #include "bake/live/exact/resolvent.h"
+#include "runtime/src/base/vector_clones.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/quadrature.h"
 #include "sunbeam/detail/text.h"
-#include "sunbeam/detail/vector_clones.h"
 
 namespace sunbeam {
 namespace {

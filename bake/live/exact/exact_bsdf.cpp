@@ -3,8 +3,8 @@
 #include <array>
 
 #include "bake/live/film/visible_normals.h"
+#include "runtime/src/base/vector_clones.h"
 #include "sunbeam/detail/bracket.h"
-#include "sunbeam/detail/vector_clones.h"
 
 namespace sunbeam {
 namespace {

@@ -12,9 +12,9 @@
 #include <numbers>
 #include <type_traits>
 
+#include "runtime/src/base/vector_clones.h"
 #include "sunbeam/core/rng.h"
 #include "sunbeam/core/vec.h"
-#include "sunbeam/detail/vector_clones.h"
 
 namespace sunbeam::walk {
 

@@ -8,12 +8,12 @@
 #include <cmath>
 
 #include "runtime/src/base/lanes.h"
+#include "runtime/src/base/vector_clones.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/core/vec.h"
 #include "sunbeam/detail/quadrature.h"
 #include "sunbeam/detail/refraction.h"
 #include "sunbeam/detail/text.h"
-#include "sunbeam/detail/vector_clones.h"
 
 namespace sunbeam {
 inline namespace v1 {

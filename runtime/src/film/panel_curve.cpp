@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "runtime/src/base/vector_clones.h"
 #include "sunbeam/core/vec.h"
-#include "sunbeam/detail/vector_clones.h"
 
 namespace sunbeam {
 inline namespace v1 {

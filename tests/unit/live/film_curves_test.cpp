@@ -13,7 +13,6 @@
 namespace sunbeam {
 namespace {
 
-
 constexpr double kError = 1e-10;  // that the header states
 constexpr std::array kAll{0, 1, 2};
 

@@ -58,14 +58,19 @@ const Bsdf& dense_scattering() { return dense_bsdf("scattering_per_nm = 0.5", "a
 const Bsdf& dense_anisotropic() { return dense_bsdf("roughness = [0.1, 0.3]", "angles = 10\nazimuths = 8"); }
 
 // A mirror of ten layers over a diffuse base, whose colours change fast with both directions.
+const Table& mirror() {
+  static const Table baked =
+      bake_table(parse_recipe("[material]\nfilm_periods = 5\nroughness = 0.1\n"
+                              "[[material.film]]\nthickness_nm = 60.0\nior = \"titania\"\n"
+                              "[[material.film]]\nthickness_nm = 95.0\nior = \"silica\"\n"
+                              "[grid]\nfilm_thickness_nm = [600.0, 900.0]\n[spectrum]\nmode = \"full\"\n",
+                              "mirror"),
+                 {.seed = 1, .threads = 0, .on_progress = {}});
+  return baked;
+}
+
 const Bsdf& layered_bsdf() {
-  static const Table baked = bake_table(
-      parse_recipe("[material]\nfilm_periods = 5\nroughness = 0.1\n"
-                   "[[material.film]]\nthickness_nm = 60.0\nior = \"titania\"\n"
-                   "[[material.film]]\nthickness_nm = 95.0\nior = \"silica\"\n[spectrum]\nmode = \"full\"\n",
-                   "mirror"),
-      {.seed = 1, .threads = 0, .on_progress = {}});
-  static const TableBsdf bsdf(baked, Parameters::of(baked.material), OutsideGrid::refuse);
+  static const TableBsdf bsdf(mirror(), Parameters::of(mirror().material), OutsideGrid::refuse);
   return bsdf;
 }
 
@@ -136,6 +141,19 @@ void textured_eval_pdf(benchmark::State& state) {
   const TexturedTable& textured = textured_table();
   const auto pairs = random_pairs();
   const auto parameters = random_parameters();
+  std::size_t k = 0;
+  for (auto _ : state) {
+    const Pair& pair = pairs[k % kPairs];
+    benchmark::DoNotOptimize(textured.at(parameters[k++ % kPairs]).eval_pdf(pair.wo, pair.wi));
+  }
+}
+
+void textured_layered(benchmark::State& state) {
+  static const TexturedTable textured(mirror());
+  const auto pairs = random_pairs();
+  Rng rng(4, 0);
+  std::vector<Parameters> parameters(kPairs, Parameters::of(mirror().material));
+  for (Parameters& at : parameters) at.film_thickness_nm = lerp(rng.uniform(), 600, 900);
   std::size_t k = 0;
   for (auto _ : state) {
     const Pair& pair = pairs[k % kPairs];
@@ -255,6 +273,7 @@ BENCHMARK(bound_eval_span);
 BENCHMARK(bind);
 BENCHMARK(load);
 BENCHMARK(textured_eval_pdf);
+BENCHMARK(textured_layered);
 BENCHMARK(textured_sample);
 BENCHMARK_CAPTURE(textured_kind, product, kTexturedProduct);
 BENCHMARK_CAPTURE(textured_kind, anisotropic, kTexturedAnisotropic);

@@ -1,20 +1,9 @@
-// Ways to spoil a factored table, and what readers must say of each.
+// Ways to spoil a factored table.
 #pragma once
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "tests/table/support.h"
+#include "tests/table/files/defects.h"
 
 namespace sunbeam::test {
-
-inline constexpr const char* kName = "folder/some.table";
-
-struct Defect {
-  std::string description;
-  std::function<void(Table&)> make;
-  std::vector<std::string> named;  // what the message must say
-};
 
 inline NdArray rebuilt(const NdArray& array, std::vector<Axis> axes, std::size_t channels = 1) {
   NdArray result(array.name(), std::move(axes), array.precision(), channels);
@@ -69,19 +58,6 @@ inline std::function<void(Table&)> with_grid(std::size_t k, const std::function<
 
 inline std::function<void(Table&)> with_wavelengths(const std::function<void(Wavelengths&)>& change) {
   return [=](Table& table) { change(table.factors.wavelengths); };
-}
-
-inline void expect_named(const Table& sound, const std::vector<Defect>& defects) {
-  for (const Form& form : forms())
-    for (const Defect& defect : defects) {
-      Table table = sound;
-      ASSERT_EQ(refusal(form, form.bytes(table), kName), "accepted");
-      defect.make(table);
-      const std::string message = refusal(form, form.bytes(table), kName);
-      EXPECT_THAT(message, ::testing::StartsWith(kName)) << form.name << ", " << defect.description;
-      for (const std::string& part : defect.named)
-        EXPECT_THAT(message, ::testing::HasSubstr(part)) << form.name << ", " << defect.description;
-    }
 }
 
 }  // namespace sunbeam::test

@@ -10,7 +10,6 @@
 namespace sunbeam {
 namespace {
 
-using test::expect_error_or_equal;
 using test::expect_named;
 using test::Form;
 using test::forms;
@@ -162,32 +161,12 @@ TEST(FactoredWriter, ValuesThatAreNotFiniteAreRefused) {
     }
 }
 
-// Every outcome but a crash or a wrong table: an Error that names the file, or the very table.
 TEST(FactoredReader, SurvivesFlippedBits) {
   const Table tables[] = {small_factored_table(), small_factored_table({0.3, 0.1}, AbsorptionPath::product)};
-  for (const Table& table : tables)
-    for (const Form& form : forms()) {
-      const std::string bytes = form.bytes(table);
-      Rng rng(1, static_cast<std::uint64_t>(&table - tables));
-      for (int k = 0; k < 300; ++k) {
-        const auto at = static_cast<std::size_t>(rng.uniform() * static_cast<double>(bytes.size()));
-        std::string damaged = bytes;
-        damaged[at] = static_cast<char>(damaged[at] ^ (1 << (rng.next() % 8)));
-        expect_error_or_equal(form, damaged, kName, table, "byte " + std::to_string(at));
-      }
-    }
+  for (std::size_t k = 0; k < std::size(tables); ++k) test::expect_survives_flipped_bits(tables[k], k);
 }
 
-TEST(FactoredReader, SurvivesTruncation) {
-  const Table table = small_factored_table();
-  for (const Form& form : forms()) {
-    const std::string bytes = form.bytes(table);
-    for (std::size_t k = 0; k < 50; ++k)
-      EXPECT_THAT(refusal(form, bytes.substr(0, bytes.size() * k / 50), kName), StartsWith(kName))
-          << form.name;
-    EXPECT_THAT(refusal(form, bytes.substr(0, bytes.size() - 1), kName), StartsWith(kName)) << form.name;
-  }
-}
+TEST(FactoredReader, SurvivesTruncation) { test::expect_survives_truncation(small_factored_table()); }
 
 }  // namespace
 }  // namespace sunbeam

@@ -12,7 +12,6 @@ namespace sunbeam {
 namespace {
 
 using test::Defect;
-using test::expect_error_or_equal;
 using test::expect_named;
 using test::Form;
 using test::forms;
@@ -269,31 +268,12 @@ TEST(LayeredReader, MissingKeysOfVersion4) {
     }
 }
 
-// Every outcome but a crash or a wrong table: an Error that names the file, or the very table.
 TEST(LayeredReader, SurvivesFlippedBits) {
   const Table tables[] = {layered_table(), layered_product(), test::layered_opaque_table()};
-  for (const Table& table : tables)
-    for (const Form& form : forms()) {
-      const std::string bytes = form.bytes(table);
-      Rng rng(1, static_cast<std::uint64_t>(&table - tables));
-      for (int k = 0; k < 300; ++k) {
-        const auto at = static_cast<std::size_t>(rng.uniform() * static_cast<double>(bytes.size()));
-        std::string damaged = bytes;
-        damaged[at] = static_cast<char>(damaged[at] ^ (1 << (rng.next() % 8)));
-        expect_error_or_equal(form, damaged, kName, table, "byte " + std::to_string(at));
-      }
-    }
+  for (std::size_t k = 0; k < std::size(tables); ++k) test::expect_survives_flipped_bits(tables[k], k);
 }
 
-TEST(LayeredReader, SurvivesTruncation) {
-  const Table table = layered_table();
-  for (const Form& form : forms()) {
-    const std::string bytes = form.bytes(table);
-    for (std::size_t k = 0; k < 50; ++k)
-      EXPECT_THAT(refusal(form, bytes.substr(0, bytes.size() * k / 50), kName), StartsWith(kName))
-          << form.name;
-  }
-}
+TEST(LayeredReader, SurvivesTruncation) { test::expect_survives_truncation(layered_table()); }
 
 }  // namespace
 }  // namespace sunbeam

@@ -13,15 +13,18 @@
 #include <sstream>
 
 #include "sunbeam/detail/file.h"
-#include "tests/table/support.h"
+#include "tests/table/files/defects.h"
 
 namespace sunbeam {
 namespace {
 
 using test::axis;
+using test::Defect;
 using test::expect_error_or_equal;
+using test::expect_named;
 using test::Form;
 using test::forms;
+using test::kName;
 using test::refusal;
 using test::small_table;
 using ::testing::AllOf;
@@ -29,16 +32,8 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 using ::testing::ThrowsMessage;
 
-constexpr const char* kName = "folder/some.table";
-
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
-
-struct Defect {
-  std::string description;
-  std::function<void(Table&)> make;
-  std::vector<std::string> named;  // what the message must say
-};
 
 // The array anew, with other axes or another name; content does not matter.
 NdArray rebuilt(const NdArray& array, std::vector<Axis> axes, const std::string& name = "") {
@@ -171,19 +166,6 @@ std::vector<Defect> defects() {
   for (const auto& [key, value] : test::complete_info())
     list.push_back({"missing " + key, [key = key](Table& t) { t.info.erase(key); }, {key, "is missing"}});
   return list;
-}
-
-void expect_named(const Table& sound, const std::vector<Defect>& defects) {
-  for (const Form& form : forms())
-    for (const Defect& defect : defects) {
-      Table table = sound;
-      ASSERT_EQ(refusal(form, form.bytes(table), kName), "accepted");
-      defect.make(table);
-      const std::string message = refusal(form, form.bytes(table), kName);
-      EXPECT_THAT(message, StartsWith(kName)) << form.name << ", " << defect.description;
-      for (const std::string& part : defect.named)
-        EXPECT_THAT(message, HasSubstr(part)) << form.name << ", " << defect.description;
-    }
 }
 
 TEST(TableReader, NamesEveryDefect) { expect_named(small_table(), defects()); }
@@ -390,19 +372,7 @@ TEST(TableWriter, EmptyTableIsRefused) {
   for (const Form& form : forms()) EXPECT_THROW(form.bytes(Table()), Error) << form.name;
 }
 
-TEST(TableReader, SurvivesTruncation) {
-  const Table table = small_table();
-  for (const Form& form : forms()) {
-    const std::string bytes = form.bytes(table);
-    for (std::size_t k = 0; k < 50; ++k) {
-      const std::string cut = bytes.substr(0, bytes.size() * k / 50);
-      EXPECT_THAT(refusal(form, cut, kName), StartsWith(kName))
-          << form.name << ", " << cut.size() << " bytes";
-    }
-    const std::string one_short = bytes.substr(0, bytes.size() - 1);
-    EXPECT_THAT(refusal(form, one_short, kName), StartsWith(kName)) << form.name;
-  }
-}
+TEST(TableReader, SurvivesTruncation) { test::expect_survives_truncation(small_table()); }
 
 TEST(TableReader, SurvivesTruncationUnderAForeignIdentifier) {
   const Table table = small_table();
@@ -417,20 +387,7 @@ TEST(TableReader, SurvivesTruncationUnderAForeignIdentifier) {
 TEST(TableReader, SurvivesFlippedBits) {
   const Table tables[] = {small_table(Precision::single_float), small_table(Precision::half_float),
                           test::small_anisotropic_table()};
-  for (const Table& table : tables) {
-    for (const Form& form : forms()) {
-      const std::string bytes = form.bytes(table);
-      Rng rng(1, static_cast<std::uint64_t>(&table - tables));
-      for (int k = 0; k < 300; ++k) {
-        const auto at = static_cast<std::size_t>(rng.uniform() * static_cast<double>(bytes.size()));
-        const unsigned bit = rng.next() % 8;
-        std::string damaged = bytes;
-        damaged[at] = static_cast<char>(damaged[at] ^ (1 << bit));
-        expect_error_or_equal(form, damaged, kName, table,
-                              "bit " + std::to_string(bit) + " of byte " + std::to_string(at));
-      }
-    }
-  }
+  for (std::size_t k = 0; k < std::size(tables); ++k) test::expect_survives_flipped_bits(tables[k], k);
 }
 
 }  // namespace

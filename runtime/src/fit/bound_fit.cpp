@@ -71,11 +71,13 @@ double ratio_error(const BoundWaves& waves, const Separable& fit) {
   constexpr int kStep = 3;  // every third interval serves
   std::vector<BoundWaves::Direction> between;
   std::vector<EvenPosition> at;
+  std::vector<Rgb> scales;
   std::vector<float> cosines;
   for (int k = 0; k + 1 < fit.ratio_roots; k += kStep) {
     const double root = (k + 0.5) / (fit.ratio_roots - 1);
     cosines.push_back(static_cast<float>(entering_cosine(waves.material(), root * root)));
     between.push_back(waves.direction(double{cosines.back()}, 0));
+    scales.push_back(scale_of(waves, between.back()));
     at.emplace_back(std::sqrt(cosines.back()), fit.ratio_roots);
   }
   double worst = 0;
@@ -84,8 +86,7 @@ double ratio_error(const BoundWaves& waves, const Separable& fit) {
     double wrong = 0, whole = 0;
     for (std::size_t o = 0; o < between.size(); ++o) {
       const Rgb rest = waves.rest(row, between[o]);
-      const Rgb found =
-          to_rgb(fit.ratio(at[i], at[o])) * scale_of(waves, between[i]) * scale_of(waves, between[o]);
+      const Rgb found = to_rgb(fit.ratio(at[i], at[o])) * scales[i] * scales[o];
       wrong += std::sqrt(cosines[o]) * cosines[o] * magnitude(found - rest);
       whole += std::sqrt(cosines[o]) * cosines[o] * magnitude(rest);
     }

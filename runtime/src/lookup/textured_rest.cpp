@@ -30,23 +30,9 @@ TexturedRest::TexturedRest(const Table& table, Arithmetic arithmetic)
   pairs_ = std::move(fit.pairs);
 }
 
-TexturedRest::PairTaps TexturedRest::taps(const PairEnd& end) const {
-  const EvenPosition c(end.coordinate, grid_.pair_cosines);
-  PairTaps taps{{c.lower, c.lower + 1}, {1 - c.upper_weight, c.upper_weight}, 2};
-  if (grid_.pair_phis == 1) return taps;
-  const EvenPosition p(end.phi, grid_.pair_phis);
-  for (int k = 0; k < 2; ++k) {
-    taps.node[k] += p.lower * grid_.pair_cosines;
-    taps.node[k + 2] = taps.node[k] + grid_.pair_cosines;
-    taps.weight[k + 2] = taps.weight[k] * p.upper_weight;
-    taps.weight[k] *= 1 - p.upper_weight;
-  }
-  taps.count = 4;
-  return taps;
-}
-
 Color4 TexturedRest::exchange(const Parameters& at, const PairEnd& o, const PairEnd& i) const {
-  const PairTaps of_o = taps(o), of_i = taps(i);
+  const PairTaps of_o(o.coordinate, o.phi, grid_.pair_cosines, grid_.pair_phis),
+      of_i(i.coordinate, i.phi, grid_.pair_cosines, grid_.pair_phis);
   const EvenPosition d = grid_.axes[0].locate(at.film_thickness_nm), n = grid_.axes[1].locate(at.base_ior),
                      s = grid_.axes[2].locate(at.absorption_per_nm);
   const auto weight = [](const EvenPosition& x, int upper) {

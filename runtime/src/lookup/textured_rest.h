@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/src/base/exp4.h"
+#include "runtime/src/rest/pair_taps.h"
 #include "runtime/src/rest/textured_grid.h"
 #include "runtime/src/rest/textured_media.h"
 #include "sunbeam/detail/textured_point.h"
@@ -88,14 +89,6 @@ class TexturedRest {
   std::size_t bytes() const { return (nodes_.size() + pairs_.size()) * sizeof(Color4); }
 
  private:
-  // Holds the neighbours of a direction among those of pairs_, and their weights.
-  struct PairTaps {
-    std::array<int, 4> node;
-    std::array<float, 4> weight;
-    int count;
-  };
-  PairTaps taps(const PairEnd& end) const;
-
   TexturedGrid grid_;
   TexturedMedia media_;
   int stride_;                 // from path to path, in nodes

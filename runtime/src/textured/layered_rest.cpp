@@ -134,23 +134,9 @@ float LayeredRest::first_chance(const Point& at, const End& w) const {
   return row[0][3] + c.upper_weight * (row[1][3] - row[0][3]);
 }
 
-LayeredRest::PairTaps LayeredRest::taps(const End& end) const {
-  const EvenPosition c(end.cosine, grid_.pair_cosines());
-  PairTaps taps{{c.lower, c.lower + 1}, {1 - c.upper_weight, c.upper_weight}, 2};
-  if (grid_.pair_phis() == 1) return taps;
-  const EvenPosition p(end.phi, grid_.pair_phis());
-  for (int k = 0; k < 2; ++k) {
-    taps.node[k] += p.lower * grid_.pair_cosines();
-    taps.node[k + 2] = taps.node[k] + grid_.pair_cosines();
-    taps.weight[k + 2] = taps.weight[k] * p.upper_weight;
-    taps.weight[k] *= 1 - p.upper_weight;
-  }
-  taps.count = 4;
-  return taps;
-}
-
 LayeredRest::PairRows LayeredRest::pair_rows(const Point& at, const End& o, const End& i) const {
-  const PairTaps of_o = taps(o), of_i = taps(i);
+  const int cosines = grid_.pair_cosines(), phis = grid_.pair_phis();
+  const PairTaps of_o(o.cosine, o.phi, cosines, phis), of_i(i.cosine, i.phi, cosines, phis);
   const int ends = grid_.ends(), absorptions = grid_.absorptions() == 1 ? 1 : 2;
   PairRows rows;
   rows.taps = of_i.count;

@@ -6,6 +6,7 @@
 
 #include "runtime/src/base/bound_axis.h"
 #include "runtime/src/base/exp4.h"
+#include "runtime/src/rest/pair_taps.h"
 #include "runtime/src/textured/layered_arrays.h"
 
 namespace sunbeam {
@@ -76,12 +77,6 @@ class LayeredRest {
   std::size_t bytes() const { return arrays_.bytes(); }
 
  private:
-  struct PairTaps {
-    std::array<int, 4> node;
-    std::array<float, 4> weight;
-    int count;
-  };
-  PairTaps taps(const End& end) const;
   void take_absorption(double absorption_per_nm, Point& point) const;
   Color4 share(const Point& at, const End& w) const;
   Color4 log(const Point& at, const End& w) const;

@@ -210,7 +210,7 @@ class TableRows {
   void bind(std::size_t k, const Parameters& parameters) {
     if (bsdf_ && Parameters::of(bsdf_->material()).values() == parameters.values()) return;
     try {
-      bsdf_ = std::make_shared<TableBsdf>(table_, parameters, OutsideGrid::refuse);
+      bsdf_ = std::make_shared<TableBsdf>(table_, parameters);
     } catch (const Error& error) {
       throw Error(fmt::format("{}:{}: {}", csv_.name, csv_.rows[k].line, error.what()));
     }

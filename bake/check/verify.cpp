@@ -86,7 +86,7 @@ double energy_of(const Rgb& albedo, const Wavelengths& wavelengths, ColorSpace s
 struct Prepared {
   // What a table states of itself must not depend on the processor.
   Prepared(const Table& table, const Parameters& parameters, const Spectrum& spectrum, Estimator truth)
-      : bsdf(table, parameters, OutsideGrid::refuse, Arithmetic::reproducible),
+      : bsdf(table, parameters, {.arithmetic = Arithmetic::reproducible}),
         wavelengths(spectrum.wavelengths(bsdf.material())),
         model(bsdf.material(), wavelengths) {
     if (truth == Estimator::exact && !bsdf.material().scatters()) exact.emplace(bsdf.material(), wavelengths);
@@ -105,7 +105,7 @@ struct SharedChecks {
         settings(settings),
         spectrum(parse_stored_recipe(table.head().info.at("recipe"), "recipe of the table").spectrum) {
     if (!table.is_in_memory()) return;
-    textured.emplace(table.head(), Arithmetic::reproducible);
+    textured.emplace(table.head(), BindOptions{.arithmetic = Arithmetic::reproducible});
     for (std::size_t k = 0; k < kParameterNames.size(); ++k)
       if (table.parameter_axis(k).size() > 1) return;
     prepared =
@@ -155,7 +155,7 @@ class PointCheck {
  private:
   void prepare(const Table& table, const Spectrum& spectrum) {
     prepared_ = std::make_shared<Prepared>(table, point_.parameters, spectrum, settings_.truth);
-    if (!textured_) textured_.emplace(table, Arithmetic::reproducible);
+    if (!textured_) textured_.emplace(table, BindOptions{.arithmetic = Arithmetic::reproducible});
   }
   const TableBsdf& bsdf() const { return prepared_->bsdf; }
 

@@ -6,7 +6,7 @@ namespace sunbeam {
 
 std::vector<Rgb> TableAppearance::rest(const Vec3& a, std::span<const Vec3> b) const {
   std::vector<Rgb> values;
-  for (const Vec3& w : b) values.push_back(to_rec709_ * bsdf_.rest(a, w));
+  for (const Vec3& w : b) values.push_back(bsdf_.rest(a, w));
   return values;
 }
 

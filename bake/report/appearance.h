@@ -29,17 +29,16 @@ class Appearance {
 class TableAppearance final : public Appearance {
  public:
   TableAppearance(const Table& table, const Parameters& parameters, OutsideGrid outside)
-      : bsdf_(table, parameters, outside), to_rec709_(rgb_to_rgb(table.color_space(), ColorSpace::rec709)) {}
+      : bsdf_(table, parameters, {.outside = outside, .color_space = ColorSpace::rec709}) {}
 
   const Material& material() const override { return bsdf_.material(); }
-  Rgb first(const Vec3& a, const Vec3& b) const override { return to_rec709_ * bsdf_.first(a, b); }
-  Rgb dirac(const Vec3& a) const override { return to_rec709_ * bsdf_.dirac(a); }
+  Rgb first(const Vec3& a, const Vec3& b) const override { return bsdf_.first(a, b); }
+  Rgb dirac(const Vec3& a) const override { return bsdf_.dirac(a); }
   std::vector<Rgb> rest(const Vec3& a, std::span<const Vec3> b) const override;
-  Rgb film_reflectance(double cosine) const { return to_rec709_ * bsdf_.film_reflectance(cosine); }
+  Rgb film_reflectance(double cosine) const { return bsdf_.film_reflectance(cosine); }
 
  private:
   TableBsdf bsdf_;
-  ColorMatrix to_rec709_;
 };
 
 // These are the estimates of a live direction where there is no exact evaluator: a picture has thousands of

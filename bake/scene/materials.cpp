@@ -19,6 +19,8 @@
 namespace sunbeam {
 namespace {
 
+constexpr BindOptions kInRec709 = {.color_space = ColorSpace::rec709};
+
 Table load_scene_table(const Scene& scene, const std::string& scene_path) {
   if (scene.table.empty()) throw Error(scene_path + ": key 'table' is missing; --material live needs none");
   if (!std::filesystem::exists(scene.table))
@@ -43,15 +45,13 @@ std::unique_ptr<Bsdf> in_rec709(B bsdf, ColorSpace space) {
 
 class VaryingTableSkin final : public VaryingBsdf {
  public:
-  explicit VaryingTableSkin(const Table& table)
-      : table_(table), matrix_(rgb_to_rgb(table.color_space(), ColorSpace::rec709)) {}
+  explicit VaryingTableSkin(const Table& table) : table_(table, kInRec709) {}
   const Bsdf& at(const Parameters& parameters, BsdfRoom& room) const override {
-    return room.emplace<ColorConvertedBsdf<TexturedTable::At>>(table_.at(parameters), matrix_);
+    return room.emplace<TexturedTable::At>(table_.at(parameters));
   }
 
  private:
   TexturedTable table_;
-  ColorMatrix matrix_;
 };
 
 std::unique_ptr<Bsdf> live_bsdf(const Material& material, const Spectrum& spectrum, Estimator estimator) {
@@ -142,8 +142,7 @@ void SceneMaterials::add(std::unique_ptr<VaryingBsdf> bsdf) {
 }
 
 void SceneMaterials::add_table_skin(const SceneMaterial& skin, const Table& table) {
-  if (!skin.varies())
-    return add(in_rec709(TableBsdf(table, skin.parameters_at({}), OutsideGrid::refuse), table.color_space()));
+  if (!skin.varies()) return add(std::make_unique<TableBsdf>(table, skin.parameters_at({}), kInRec709));
   for (std::size_t k = 0; k < kParameterNames.size(); ++k) {
     const auto [low, high] = skin.parameters[k]->bounds();
     const auto& nodes = table.parameter_axis(k).nodes;

@@ -21,8 +21,11 @@ class Gloss final : public Bsdf {
     return Rgb(fresnel(dot(wo, h)) * ggx_.reflection(wo, wi, h));
   }
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override {
+    return sample(wo, random3(rng), rng);
+  }
+  std::optional<BsdfSample> sample(const Vec3& wo, const Random3& u, Rng&) const override {
     if (wo.z <= 0) return {};
-    const Vec3 h = ggx_.sample_visible(wo, {rng.uniform(), rng.uniform()});
+    const Vec3 h = ggx_.sample_visible(wo, {u[1], u[2]});
     const Vec3 wi = reflect(wo, h);
     if (wi.z <= 0) return {};
     return BsdfSample{wi, Rgb(fresnel(dot(wo, h)) * ggx_.g2_over_g1(wo, wi)), false,

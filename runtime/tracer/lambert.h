@@ -14,8 +14,11 @@ class Lambert final : public Bsdf {
     return wo.z > 0 && wi.z > 0 ? albedo_ * kInvPi : Rgb();
   }
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override {
+    return sample(wo, random3(rng), rng);
+  }
+  std::optional<BsdfSample> sample(const Vec3& wo, const Random3& u, Rng&) const override {
     if (wo.z <= 0) return {};
-    const Vec3 wi = sample_cosine({rng.uniform(), rng.uniform()});
+    const Vec3 wi = sample_cosine({u[1], u[2]});
     return BsdfSample{wi, albedo_, false, cosine_pdf(wi.z)};
   }
   double pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return mis_pdf(wo, wi); }

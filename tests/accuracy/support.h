@@ -51,9 +51,7 @@ inline const Table& baked(const SmallRecipe& recipe) {
   return cache.at(text);
 }
 
-inline TableBsdf bsdf_of(const Table& table) {
-  return TableBsdf(table, Parameters::of(table.material), OutsideGrid::refuse);
-}
+inline TableBsdf bsdf_of(const Table& table) { return TableBsdf(table, Parameters::of(table.material)); }
 
 struct Configuration {
   std::string name;

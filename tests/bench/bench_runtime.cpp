@@ -50,8 +50,7 @@ const Bsdf& dense_bsdf(const std::string& material, const std::string& table) {
                                          table + "\n[accuracy]\nnoise = 1",
                                      "dense");
   const Table baked = bake_table(recipe, {.seed = 1, .threads = 0, .on_progress = {}});
-  return bound.try_emplace(material, baked, Parameters::of(baked.material), OutsideGrid::refuse)
-      .first->second;
+  return bound.try_emplace(material, baked, Parameters::of(baked.material)).first->second;
 }
 const Bsdf& dense_plain() { return dense_bsdf("roughness = 0.1", "angles = 12"); }
 const Bsdf& dense_scattering() { return dense_bsdf("scattering_per_nm = 0.5", "angles = 10\nazimuths = 7"); }
@@ -70,12 +69,12 @@ const Table& mirror() {
 }
 
 const Bsdf& layered_bsdf() {
-  static const TableBsdf bsdf(mirror(), Parameters::of(mirror().material), OutsideGrid::refuse);
+  static const TableBsdf bsdf(mirror(), Parameters::of(mirror().material));
   return bsdf;
 }
 
 const Bsdf& table_bsdf() {
-  static const TableBsdf bsdf(table(), Parameters::of(table().material), OutsideGrid::refuse);
+  static const TableBsdf bsdf(table(), Parameters::of(table().material));
   return bsdf;
 }
 

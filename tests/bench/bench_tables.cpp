@@ -65,8 +65,7 @@ Overrides at_the_point(Overrides overrides) {
 // What Sunbeam bakes of the one point.
 struct Baked {
   explicit Baked(const Overrides& overrides)
-      : table(bake_table(load_recipe(kRecipe, at_the_point(overrides)), {})),
-        bsdf(table, kPoint, OutsideGrid::refuse) {}
+      : table(bake_table(load_recipe(kRecipe, at_the_point(overrides)), {})), bsdf(table, kPoint) {}
   Source source(const std::string& name) const {
     return {name, "sunbeam", bsdf, table_exr_bytes(table).size()};
   }
@@ -154,8 +153,7 @@ nlohmann::ordered_json weigh_samples(const Effort& effort) {
   const auto points = materials_of(recipe, effort.materials, rng);
   std::vector<double> deviations;
   for (const Parameters& point : points)
-    deviations.push_back(
-        throughput_deviation(TableBsdf(table, point, OutsideGrid::refuse), wo, effort.draws, rng));
+    deviations.push_back(throughput_deviation(TableBsdf(table, point), wo, effort.draws, rng));
   const auto worst = std::max_element(deviations.begin(), deviations.end());
   return {{"theta_o_deg", kSampleAngle},
           {"materials", points.size()},

@@ -45,7 +45,7 @@ inline void look_up(const Bsdf& bsdf) {
 }
 
 inline void look_up_bound(const Table& table, const Parameters& at) {
-  const TableBsdf bsdf = table.bind(at, OutsideGrid::clamp);
+  const TableBsdf bsdf = table.bind(at, {.outside = OutsideGrid::clamp});
   look_up(bsdf);
   const Vec3 wo = normalize(Vec3{0.4, 0.1, 0.6});
   require_finite(bsdf.dirac(wo));

@@ -94,7 +94,7 @@ void print_all() {
   const Table table = golden();
   look_up_bound("golden bound", table.bind(Parameters::of(table.material)), pairs);
   for (const auto& [name, table] : tables()) {
-    look_up_bound(name + " bound", table.bind({250, 1.45, 0.1}, OutsideGrid::clamp), pairs);
+    look_up_bound(name + " bound", table.bind({250, 1.45, 0.1}, {.outside = OutsideGrid::clamp}), pairs);
     const TexturedTable textured(table);
     Rng rng(3, 0);
     for (const Pair& pair : pairs) look_up(name + " textured", textured.at(pair.at), pair, rng);

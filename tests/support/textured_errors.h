@@ -22,7 +22,7 @@ inline double mean_abs(const Rgb& x) { return (std::abs(x.r) + std::abs(x.g) + s
 // As bake/check/verify.h measures a table: Int |difference| cos / max(Int |f| cos, 0.002).
 inline double error_at(const TexturedTable& textured, const Table& table, const Parameters& at, Rng& rng) {
   const TexturedTable::At bsdf = textured.at(at);
-  const TableBsdf reference(table, at, OutsideGrid::refuse);
+  const TableBsdf reference(table, at);
   const Vec3 wi = direction_from_cosine(lerp(rng.uniform(), std::cos(89 * kPi / 180), 1), 1);
   double difference = 0, total = 0;
   constexpr int kDraws = 256;

@@ -86,4 +86,13 @@ inline std::vector<Table> factored_tables() {
   return tables;
 }
 
+// Factored tables and dense ones, each of every kind.
+inline std::vector<Table> tables_of_every_kind() {
+  std::vector<Table> tables = factored_tables();
+  for (const bool rough : {false, true}) tables.push_back(small_table(Precision::half_float, rough));
+  tables.push_back(small_anisotropic_table());
+  tables.push_back(small_full_table());
+  return tables;
+}
+
 }  // namespace sunbeam::test

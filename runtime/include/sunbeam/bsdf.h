@@ -5,6 +5,7 @@
 // densities are 0 and sample() is empty.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "sunbeam/core/rng.h"
@@ -12,6 +13,15 @@
 
 namespace sunbeam {
 inline namespace v1 {
+
+// Holds the numbers in [0, 1) that one direction is drawn from. The first chooses the lobe, and all three
+// move the direction, so that points spread evenly over the cube spread directions evenly.
+using Random3 = std::array<double, 3>;
+
+inline Random3 random3(Rng& rng) {
+  const double first = rng.uniform(), second = rng.uniform();
+  return {first, second, rng.uniform()};
+}
 
 // A direction that sample() has drawn, and what a path carries on along it.
 struct BsdfSample {
@@ -47,6 +57,13 @@ class Bsdf {
   // Draws one direction. The result is empty when the light is lost (absorbed, shadowed): the path then ends.
   virtual std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const = 0;
 
+  // Does the same from the caller's numbers: a deterministic BSDF is a pure function of `wo` and `u` and
+  // leaves `rng` untouched, a stochastic one draws from `rng` and leaves `u`.
+  virtual std::optional<BsdfSample> sample(const Vec3& wo, const Random3& u, Rng& rng) const {
+    (void)u;
+    return sample(wo, rng);
+  }
+
   // Returns the density per solid angle (1/sr) of a non-Dirac outcome of sample(). It includes the chance of
   // choosing the lobe, so that its integral is 1 - P(Dirac) - P(empty). It is exact if the BSDF is
   // deterministic, else an unbiased estimate.
@@ -66,6 +83,12 @@ class Bsdf {
   virtual EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const {
     const EvalPdf value = eval_pdf(wo, wi, rng);
     return {value, sample(wo, rng)};
+  }
+
+  // Does the same with sample(wo, u, rng).
+  virtual EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, const Random3& u, Rng& rng) const {
+    const EvalPdf value = eval_pdf(wo, wi, rng);
+    return {value, sample(wo, u, rng)};
   }
 
   // Says whether turning wo and wi together about the normal changes nothing, so that any tangent serves.

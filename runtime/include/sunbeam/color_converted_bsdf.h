@@ -1,5 +1,5 @@
-// This adapter serves a renderer whose linear colour space is not the table's: tables of full spectrum
-// usually hold ACEScg, and many renderers work in Rec.709 (Table::color_space() names the space).
+// This adapter serves a renderer whose linear colour space is not that of a live model. Tables need none:
+// their look-ups are bound to the renderer's space (bind_options.h).
 //
 // Values and throughputs go through the matrix rgb_to_rgb(from, to), which keeps greys; densities and
 // directions stay as they are. Components keep their sign: a colour that `to` cannot show has a negative one.
@@ -26,6 +26,12 @@ class ColorConvertedBsdf final : public Bsdf {
   }
   std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override {
     auto sample = bsdf_.sample(wo, rng);
+    if (sample) sample->throughput = matrix_ * sample->throughput;
+    return sample;
+  }
+  std::optional<BsdfSample> sample(const Vec3& wo, const Random3& u, Rng& rng) const override {
+    const Bsdf& inner = bsdf_;  // its class may hide this overload
+    auto sample = inner.sample(wo, u, rng);
     if (sample) sample->throughput = matrix_ * sample->throughput;
     return sample;
   }

@@ -37,11 +37,11 @@
 #include <string_view>
 #include <vector>
 
+#include "sunbeam/bind_options.h"
 #include "sunbeam/core/color_space.h"
 #include "sunbeam/detail/angles.h"
 #include "sunbeam/detail/factors.h"
 #include "sunbeam/detail/nd_array.h"
-#include "sunbeam/detail/processor.h"
 #include "sunbeam/material.h"
 #include "sunbeam/parameters.h"
 
@@ -61,9 +61,6 @@ enum class FrameKind { closed, none };
 constexpr const char* name_of(FrameKind frame) { return frame == FrameKind::closed ? "closed" : "none"; }
 
 class TableBsdf;
-
-// Says what becomes of parameters beyond those of the table.
-enum class OutsideGrid { clamp, refuse };
 
 struct Table {
   Material material;  // fixed values, and defaults for the parameters
@@ -113,8 +110,9 @@ struct Table {
   }
 
   // Returns the material at fixed parameters, for which look-ups are prepared (table_bsdf.h). Textured
-  // parameters are the matter of textured_table.h. Throws Error naming the key if parameters are refused.
-  TableBsdf bind(const Parameters& parameters, OutsideGrid outside = OutsideGrid::refuse) const;
+  // parameters are the matter of textured_table.h. Throws Error naming the key if parameters are refused. Any
+  // number of threads may bind one table at once.
+  TableBsdf bind(const Parameters& parameters, const BindOptions& options = {}) const;
 
   // Returns T (see above) at a node or between; `x` = (film_thickness_nm, base_ior, cos_theta).
   Rgb transmittance(const std::array<double, 3>& x) const;

@@ -24,29 +24,46 @@ class BoundTable;
 class TableBsdf final : public Bsdf {
  public:
   // Slices the table at `parameters`. Outside the grid they are clamped to it, or Error is thrown.
-  TableBsdf(const Table& table, const Parameters& parameters, OutsideGrid outside,
-            Arithmetic arithmetic = Arithmetic::fastest);
+  TableBsdf(const Table& table, const Parameters& parameters, const BindOptions& options = {});
 
   const Material& material() const;
 
-  Rgb eval(const Vec3& wo, const Vec3& wi, Rng&) const override { return eval_pdf(wo, wi).f; }
-  std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override;
-  double pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return mis_pdf(wo, wi); }
-  double mis_pdf(const Vec3& wo, const Vec3& wi) const override { return eval_pdf(wo, wi).pdf; }
+  // The contract of bsdf.h without a generator.
+  Rgb eval(const Vec3& wo, const Vec3& wi) const { return eval_pdf(wo, wi).f; }
+  double pdf(const Vec3& wo, const Vec3& wi) const { return eval_pdf(wo, wi).pdf; }
+  std::optional<BsdfSample> sample(const Vec3& wo, const Random3& u) const;
+  EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, const Random3& u) const;
+
+  // The contract itself; what is random draws `u` from the generator.
+  Rgb eval(const Vec3& wo, const Vec3& wi, Rng&) const override { return eval(wo, wi); }
+  double pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return pdf(wo, wi); }
+  double mis_pdf(const Vec3& wo, const Vec3& wi) const override { return pdf(wo, wi); }
+  std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override {
+    return sample(wo, random3(rng));
+  }
+  std::optional<BsdfSample> sample(const Vec3& wo, const Random3& u, Rng&) const override {
+    return sample(wo, u);
+  }
+  EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const override {
+    return eval_and_sample(wo, wi, random3(rng));
+  }
+  EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, const Random3& u, Rng&) const override {
+    return eval_and_sample(wo, wi, u);
+  }
   bool is_isotropic() const override { return material().roughness.is_isotropic(); }
 
   // Returns value and density at once, at the price of one.
   EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi) const;
   EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return eval_pdf(wo, wi); }
 
-  EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const override;
-
   // Writes f of one viewer and many lights at a lower price each; f[k] belongs to wi[k], and there are as
   // many.
   void eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f) const;
 
+  // Return the two parts of f, never clipped.
   Rgb first(const Vec3& wo, const Vec3& wi) const;
   Rgb rest(const Vec3& wo, const Vec3& wi) const;
+  // Returns the standard error of the rest, 1/sr, in the table's own colours.
   Rgb rest_stderr(const Vec3& wo, const Vec3& wi) const;
   Rgb film_reflectance(double cosine) const;
   // Returns the weight of the mirror direction; 0 for a rough film.

@@ -78,22 +78,38 @@ class TexturedLookup;
 class TexturedTable {
  public:
   // Takes what it needs of `table`, which need not outlive it. Throws Error if the film's thickness or its
-  // layers would take too much memory or time.
-  explicit TexturedTable(const Table& table, Arithmetic arithmetic = Arithmetic::fastest);
+  // layers would take too much memory or time. `outside` of the options is of no matter.
+  explicit TexturedTable(const Table& table, const BindOptions& options = {});
 
   // At is the BSDF at one parameter point; it lives no longer than its table.
   class At final : public Bsdf {
    public:
-    Rgb eval(const Vec3& wo, const Vec3& wi, Rng&) const override { return eval_pdf(wo, wi).f; }
-    std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override;
-    double pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return mis_pdf(wo, wi); }
-    double mis_pdf(const Vec3& wo, const Vec3& wi) const override { return eval_pdf(wo, wi).pdf; }
+    // The contract of bsdf.h without a generator.
+    Rgb eval(const Vec3& wo, const Vec3& wi) const { return eval_pdf(wo, wi).f; }
+    double pdf(const Vec3& wo, const Vec3& wi) const { return eval_pdf(wo, wi).pdf; }
+    std::optional<BsdfSample> sample(const Vec3& wo, const Random3& u) const;
+    EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, const Random3& u) const;
+
+    // The contract itself; what is random draws `u` from the generator.
+    Rgb eval(const Vec3& wo, const Vec3& wi, Rng&) const override { return eval(wo, wi); }
+    double pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return pdf(wo, wi); }
+    double mis_pdf(const Vec3& wo, const Vec3& wi) const override { return pdf(wo, wi); }
+    std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const override {
+      return sample(wo, random3(rng));
+    }
+    std::optional<BsdfSample> sample(const Vec3& wo, const Random3& u, Rng&) const override {
+      return sample(wo, u);
+    }
+    EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const override {
+      return eval_and_sample(wo, wi, random3(rng));
+    }
+    EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, const Random3& u, Rng&) const override {
+      return eval_and_sample(wo, wi, u);
+    }
 
     // Returns value and density at once, at the price of one.
     EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi) const;
     EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi, Rng&) const override { return eval_pdf(wo, wi); }
-
-    EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const override;
 
     const Parameters& parameters() const { return parameters_; }
     // Returns the weight of the mirror direction; 0 for a rough film.
@@ -109,8 +125,10 @@ class TexturedTable {
     template <class Call>
     auto with_lookup(const Vec3& wo, Call call) const;
     template <class Lookup, class Viewer>
+    EvalPdf eval_pdf_for(const Lookup& lookup, const Viewer& viewer, const Vec3& wo, const Vec3& wi) const;
+    template <class Lookup, class Viewer>
     std::optional<BsdfSample> sample_for(const Lookup& lookup, const Viewer& viewer, const Vec3& wo,
-                                         Rng& rng) const;
+                                         const Random3& u) const;
 
     const TexturedData* data_;
     Parameters parameters_;

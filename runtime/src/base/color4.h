@@ -1,6 +1,8 @@
 // This file holds colours as look-ups carry them: four floats in a register, the last without meaning.
 #pragma once
 
+#include <limits>
+
 #include "runtime/src/base/lanes.h"
 #include "sunbeam/core/vec.h"
 
@@ -40,6 +42,12 @@ inline Color4 min4(const Color4& a, const Color4& b) { return select(a < b, a, b
 inline Color4 max4(const Color4& a, const Color4& b) { return select(a > b, a, b); }
 
 #endif
+
+// Returns what components are raised to: 0 if negative ones are clipped, else a number below all.
+inline Color4 least_component(bool clip_negative) {
+  const float least = clip_negative ? 0 : std::numeric_limits<float>::lowest();
+  return Color4{least, least, least, least};
+}
 
 // Finds four EvenPosition at once, from coordinates >= 0 that count nodes. None goes beyond its `last`, whose
 // place is the last node with a weight of 0 for one more, which must exist.

@@ -1,5 +1,6 @@
 #include "sunbeam/core/color_space.h"
 
+#include <array>
 #include <string>
 
 #include "sunbeam/core/error.h"
@@ -16,10 +17,14 @@ struct SpaceDefinition {
   Chromaticity red, green, blue, white;
 };
 
+constexpr Chromaticity kD65 = {0.3127, 0.3290};
+
+// Of a space with primaries; xyz has those of none, and its white.
 constexpr SpaceDefinition definition(ColorSpace space) {
   if (space == ColorSpace::acescg)
     return {{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, {0.32168, 0.33767}};
-  return {{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {0.3127, 0.3290}};
+  if (space == ColorSpace::rec2020) return {{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, kD65};
+  return {{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, kD65};
 }
 
 // Tristimulus values with Y = 1.
@@ -34,6 +39,8 @@ ColorMatrix diagonal(const Vec3& d) { return {{{d.x, 0, 0}, {0, d.y, 0}, {0, 0, 
 // XYZ to the sharpened cone responses of Bradford's transform.
 constexpr ColorMatrix kBradford = {
     {{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
+
+constexpr std::array<std::string_view, 4> kNames = {"rec709", "acescg", "rec2020", "xyz"};  // as ColorSpace
 
 }  // namespace
 
@@ -50,17 +57,21 @@ ColorMatrix inverse(const ColorMatrix& matrix) {
   return from_columns(bc / determinant, ca / determinant, ab / determinant);
 }
 
-std::string_view to_string(ColorSpace space) { return space == ColorSpace::acescg ? "acescg" : "rec709"; }
+std::string_view to_string(ColorSpace space) { return kNames[static_cast<std::size_t>(space)]; }
 
 ColorSpace color_space_from(std::string_view name) {
-  for (const ColorSpace space : {ColorSpace::rec709, ColorSpace::acescg})
-    if (name == to_string(space)) return space;
-  throw Error("found '" + shortened(name) + "'; allowed: rec709, acescg");
+  std::string allowed;
+  for (std::size_t k = 0; k < kNames.size(); ++k) {
+    if (name == kNames[k]) return static_cast<ColorSpace>(k);
+    allowed += (k > 0 ? ", " : "") + std::string(kNames[k]);
+  }
+  throw Error("found '" + shortened(name) + "'; allowed: " + allowed);
 }
 
 Vec3 white(ColorSpace space) { return tristimulus(definition(space).white); }
 
 ColorMatrix rgb_to_xyz(ColorSpace space) {
+  if (space == ColorSpace::xyz) return diagonal({1, 1, 1});
   const SpaceDefinition d = definition(space);
   const ColorMatrix primaries = from_columns(tristimulus(d.red), tristimulus(d.green), tristimulus(d.blue));
   return primaries * diagonal(inverse(primaries) * white(space));
@@ -81,9 +92,10 @@ ColorMatrix rgb_to_rgb(ColorSpace from, ColorSpace to) {
 }
 
 double luminance(const Rgb& color, ColorSpace space) {
-  static const Vec3 kRec709 = rgb_to_xyz(ColorSpace::rec709).row[1];
-  static const Vec3 kAcescg = rgb_to_xyz(ColorSpace::acescg).row[1];
-  return dot(space == ColorSpace::acescg ? kAcescg : kRec709, {color.r, color.g, color.b});
+  static const std::array<Vec3, 4> kRows = {
+      rgb_to_xyz(ColorSpace::rec709).row[1], rgb_to_xyz(ColorSpace::acescg).row[1],
+      rgb_to_xyz(ColorSpace::rec2020).row[1], rgb_to_xyz(ColorSpace::xyz).row[1]};
+  return dot(kRows[static_cast<std::size_t>(space)], {color.r, color.g, color.b});
 }
 
 GamutClip clip_negative(const Rgb& color, ColorSpace space) {

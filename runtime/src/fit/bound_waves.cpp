@@ -15,9 +15,11 @@ double cosine_at(std::size_t k) { return (static_cast<double>(k / 4) + kNode[k %
 
 }  // namespace
 
-BoundWaves::BoundWaves(const Table& table, const Material& material, const FilmKernels& kernels)
+BoundWaves::BoundWaves(const Table& table, const Material& material, const FilmKernels& kernels,
+                       const ColorMatrix& to)
     : film_(table.factors.wavelengths, material.exterior_ior, material.film_ior, kernels),
-      field_(table, material) {
+      field_(table, material),
+      to_(to) {
   if (is_layered(material, table.factors.wavelengths)) layered_.emplace(table, material);
   const bool is_sum = table.factors.exchange.empty();
   for (std::size_t k = 0; k < field_.size(); ++k)
@@ -116,12 +118,10 @@ void BoundWaves::take_shares(double cosine, double phi, double coordinate, Direc
 
 std::vector<FloatRgb> BoundWaves::reflectance(std::span<const float> cosines) const {
   std::vector<FloatRgb> folded(cosines.size());
-  if (!layered_) {
-    film_.fold(material().film_thickness_nm, material().base_ior, cosines, folded.data());
-    return folded;
-  }
+  if (!layered_) film_.fold(material().film_thickness_nm, material().base_ior, cosines, folded.data());
   for (std::size_t i = 0; i < cosines.size(); ++i) {
-    const Rgb rgb = layered_->reflectance(double{cosines[i]});
+    const FloatRgb& f = folded[i];
+    const Rgb rgb = to_ * (layered_ ? layered_->reflectance(double{cosines[i]}) : Rgb(f.r, f.g, f.b));
     folded[i] = {static_cast<float>(rgb.r), static_cast<float>(rgb.g), static_cast<float>(rgb.b)};
   }
   return folded;
@@ -148,7 +148,7 @@ Rgb BoundWaves::rest(const Row& i, const Direction& o) const {
   Rgb sum;
   for (std::size_t k = 0; k < field_.size(); ++k)
     sum += gain_[k] * i.share[k] * o.share[k] * visits(i, o, k) * field_.wavelengths().weight[k];
-  return sum;
+  return to_ * sum;
 }
 
 }  // namespace v1

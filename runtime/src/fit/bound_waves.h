@@ -16,8 +16,8 @@ inline namespace v1 {
 class BoundWaves {
  public:
   // `material` is that of the table with the parameters of the point, which lie in the grid. The table must
-  // outlive this.
-  BoundWaves(const Table& table, const Material& material, const FilmKernels& kernels);
+  // outlive this. Folded colours go through `to`.
+  BoundWaves(const Table& table, const Material& material, const FilmKernels& kernels, const ColorMatrix& to);
 
   // Holds what the rest needs to know of one direction.
   struct Direction {
@@ -44,7 +44,7 @@ class BoundWaves {
 
   // Returns A folded: what of a direction's light reaches the base.
   Rgb arriving(const Direction& w) const {
-    return field_.wavelengths().fold(std::span(w.share).first(field_.size()));
+    return to_ * field_.wavelengths().fold(std::span(w.share).first(field_.size()));
   }
 
   const Material& material() const { return field_.material(); }
@@ -62,6 +62,7 @@ class BoundWaves {
 
   FilmSpectrum film_;
   WaveField field_;
+  ColorMatrix to_;
   std::optional<LayeredWaves> layered_;  // of a layered film, else film_ serves
   std::vector<double> gain_;
   std::vector<Axis> axes_;                    // (cos_theta, phi) of exchange

@@ -10,11 +10,12 @@ constexpr int kNormalNodes = 96;  // of an albedo's quadrature over visible norm
 
 }  // namespace
 
-BoundTable::BoundTable(const Table& table, const Material& material, Arithmetic arithmetic)
-    : values_(table, material, arithmetic),
+BoundTable::BoundTable(const Table& table, const Material& material, const BindOptions& options)
+    : values_(table, material, options),
       facets_(material.roughness),
       smooth_(material.is_smooth()),
-      separable_(values_.is_separable()) {
+      separable_(values_.is_separable()),
+      least_(least_component(options.clip_negative)) {
   BoundSampling sampling(values_);
   cosine_rows_ = std::move(sampling.rest);
   facet_cells_ = std::move(sampling.first);
@@ -95,6 +96,7 @@ SUNBEAM_ALWAYS_INLINE std::array<BoundTable::Parts, kLights> BoundTable::parts(
     parts.rest = separable_ ? separable_rest(viewer.scale, values_.separable.scale({at.scale, k}), ratio)
                             : to_color4(values_.other_rest(wo, wi[static_cast<std::size_t>(k)]));
     parts.first = Color4{};
+    parts.least = least_;
     parts.pdf = ratio[3] * rest_pdf[k];
     if (smooth_) continue;
     parts.first = lights.lobe[k] * lerp(values_.film.data(), {at.film, k});
@@ -111,43 +113,38 @@ EvalPdf BoundTable::eval_pdf(const Vec3& wo, const Vec3& wi) const {
   return parts<1>(Viewer(*this, wo), wo, {wi})[0].eval_pdf();
 }
 
-// Draws from FacetCells's square, or evenly.
-inline Vec3 BoundTable::draw_first(const Viewer& viewer, int row, const Vec3& wo, Rng& rng) const {
-  const auto at = has_cells() ? facet_cells_.sample(row, rng) : FacetCells::even(rng);
-  return viewer.facets.mirrored(facets_, wo, at.turn, at.height);
-}
-
-inline Vec3 BoundTable::draw_rest(int row, Rng& rng) const {
-  const double root{cosine_rows_.sample(row, rng)};
-  return at_random_azimuth(root * root, rng);
-}
-
-// One number, `lot`, has chosen the technique; what is left of it chooses the row.
-SUNBEAM_ALWAYS_INLINE Vec3 BoundTable::draw(const Viewer& viewer, float lot, const Vec3& wo, Rng& rng) const {
+// The first number chooses the technique; what is left of it chooses the row. Visible normals come from
+// FacetCells's square, or evenly.
+SUNBEAM_ALWAYS_INLINE Vec3 BoundTable::draw(const Viewer& viewer, const Vec3& wo, const Random3& u) const {
   const float chance = viewer.first_chance(), upper = viewer.rows.upper_weight;
-  if (lot < chance) return draw_first(viewer, viewer.rows.lower + (lot < chance * upper), wo, rng);
-  return draw_rest(viewer.rows.lower + (lot - chance < (1 - chance) * upper), rng);
+  const auto lot = static_cast<float>(u[0]);
+  if (lot < chance) {
+    const int row = viewer.rows.lower + (lot < chance * upper);
+    const auto at = has_cells() ? facet_cells_.sample(row, u[1], u[2]) : FacetCells::even(u[1], u[2]);
+    return viewer.facets.mirrored(facets_, wo, at.turn, at.height);
+  }
+  const int row = viewer.rows.lower + (lot - chance < (1 - chance) * upper);
+  const double root{cosine_rows_.sample(row, u[1])};
+  return at_azimuth(root * root, FloatTurn(u[2]));
 }
 
 BsdfSample BoundTable::mirrored(const Viewer& viewer, const Vec3& wo) const {
-  return {{-wo.x, -wo.y, wo.z}, film_reflectance(wo.z) / double{viewer.first_chance()}, true, 0};
+  return {{-wo.x, -wo.y, wo.z}, dirac(wo.z) / double{viewer.first_chance()}, true, 0};
 }
 
-std::optional<BsdfSample> BoundTable::sample(const Vec3& wo, Rng& rng) const {
+std::optional<BsdfSample> BoundTable::sample(const Vec3& wo, const Random3& u) const {
   const Viewer viewer(*this, wo);
-  const float lot = uniform_float(rng);
-  if (smooth_ && lot < viewer.first_chance()) return mirrored(viewer, wo);
-  const Vec3 wi = draw(viewer, lot, wo, rng);
+  if (smooth_ && static_cast<float>(u[0]) < viewer.first_chance()) return mirrored(viewer, wo);
+  const Vec3 wi = draw(viewer, wo, u);
   if (wi.z <= 0) return {};
   return parts<1>(viewer, wo, {wi})[0].sample(wi);
 }
 
-EvalAndSample BoundTable::eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const {
+EvalAndSample BoundTable::eval_and_sample(const Vec3& wo, const Vec3& wi, const Random3& u) const {
   const Viewer viewer(*this, wo);
-  const float lot = uniform_float(rng);
-  if (smooth_ && lot < viewer.first_chance())
+  if (smooth_ && static_cast<float>(u[0]) < viewer.first_chance())
     return {parts<1>(viewer, wo, {wi})[0].eval_pdf(), mirrored(viewer, wo)};
-  const Vec3 drawn = draw(viewer, lot, wo, rng);
+  const Vec3 drawn = draw(viewer, wo, u);
   if (drawn.z <= 0) return {parts<1>(viewer, wo, {wi})[0].eval_pdf(), {}};
   const auto both = parts<2>(viewer, wo, {wi, drawn});
   return {both[0].eval_pdf(), both[1].sample(drawn)};
@@ -162,7 +159,7 @@ SUNBEAM_ALWAYS_INLINE void BoundTable::eval_four(const Viewer& viewer, const Col
   for (int k = 0; k < 4; ++k) {
     Color4 value = values_.separable.scale({at.scale, k}) * lerp(ratios, {at.ratio, k});
     if (!smooth_) value += lights.lobe[k] * lerp(values_.film.data(), {at.film, k});
-    f[k] = lights.cosine[k] > 0 ? to_rgb(value) : Rgb();
+    f[k] = lights.cosine[k] > 0 ? to_rgb(max4(value, least_)) : Rgb();
   }
 }
 

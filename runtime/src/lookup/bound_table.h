@@ -18,28 +18,31 @@ inline namespace v1 {
 class BoundTable {
  public:
   // `material` is that of the table with the parameters of the point, which lie in the grid.
-  BoundTable(const Table& table, const Material& material, Arithmetic arithmetic);
+  BoundTable(const Table& table, const Material& material, const BindOptions& options);
 
   struct Parts {
     Color4 first, rest;  // 1/sr
     float pdf;
 
-    EvalPdf eval_pdf() const { return {to_rgb(first + rest), double{pdf}}; }
+    Color4 least;  // of each component of f
+
+    EvalPdf eval_pdf() const { return {to_rgb(max4(first + rest, least)), double{pdf}}; }
     std::optional<BsdfSample> sample(const Vec3& wi) const {
       if (pdf <= 0) return {};
-      return BsdfSample{wi, to_rgb(first + rest) * (wi.z / double{pdf}), false, double{pdf}};
+      return BsdfSample{wi, eval_pdf().f * (wi.z / double{pdf}), false, double{pdf}};
     }
   };
   // All directions lie above the horizon, but for those of a span.
   Parts parts(const Vec3& wo, const Vec3& wi) const;
   EvalPdf eval_pdf(const Vec3& wo, const Vec3& wi) const;
   void eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f) const;
-  std::optional<BsdfSample> sample(const Vec3& wo, Rng& rng) const;
-  EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const;
+  std::optional<BsdfSample> sample(const Vec3& wo, const Random3& u) const;
+  EvalAndSample eval_and_sample(const Vec3& wo, const Vec3& wi, const Random3& u) const;
 
   Rgb rest(const Vec3& wo, const Vec3& wi) const;
   Rgb rest_stderr(const Vec3& wo, const Vec3& wi) const;
   Rgb film_reflectance(double cosine) const { return values_.film_reflectance(cosine); }
+  Rgb dirac(double cosine) const { return to_rgb(max4(to_color4(film_reflectance(cosine)), least_)); }
   Rgb albedo(const Vec3& wo) const;
 
   const Material& material() const { return values_.material; }
@@ -61,10 +64,8 @@ class BoundTable {
   template <int kLights>
   std::array<Parts, kLights> parts(const Viewer& viewer, const Vec3& wo,
                                    const std::array<Vec3, kLights>& wi) const;
-  Vec3 draw(const Viewer& viewer, float lot, const Vec3& wo, Rng& rng) const;
+  Vec3 draw(const Viewer& viewer, const Vec3& wo, const Random3& u) const;
   BsdfSample mirrored(const Viewer& viewer, const Vec3& wo) const;
-  Vec3 draw_first(const Viewer& viewer, int row, const Vec3& wo, Rng& rng) const;
-  Vec3 draw_rest(int row, Rng& rng) const;
   void eval_four(const Viewer& viewer, const Color4* ratios, const Vec3& wo, const Vec3* wi, Rgb* f) const;
 
   void fill_last_lanes(const std::vector<float>& first_chances);
@@ -82,6 +83,7 @@ class BoundTable {
   BoundValues values_;
   Facets facets_;
   bool smooth_, separable_;
+  Color4 least_;  // of each component of f: 0 if negative ones are clipped, else a number below all
   CosineRows cosine_rows_;
   FacetCells facet_cells_;  // of an isotropic rough film
 };

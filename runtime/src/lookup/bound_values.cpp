@@ -22,24 +22,27 @@ std::vector<Color4> folded_film(const BoundWaves& waves) {
   return nodes;
 }
 
-std::vector<Color4> interpolated_film(const NdArray& reflectance, const Material& material) {
+std::vector<Color4> interpolated_film(const NdArray& reflectance, const Material& material,
+                                      const ColorMatrix& to) {
   std::vector<Color4> nodes(BoundValues::kFilmCosines + 1);
   for (int k = 0; k < BoundValues::kFilmCosines; ++k)
-    nodes[k] = to_color4(
-        reflectance.interpolate(std::array{material.film_thickness_nm, material.base_ior, even_cosine(k)}));
+    nodes[k] = to_color4(to * reflectance.interpolate(
+                                  std::array{material.film_thickness_nm, material.base_ior, even_cosine(k)}));
   return nodes;
 }
 
 }  // namespace
 
-BoundValues::BoundValues(const Table& table, const Material& material_at, Arithmetic arithmetic)
-    : material(material_at), symmetry(table.symmetry) {
+BoundValues::BoundValues(const Table& table, const Material& material_at, const BindOptions& options)
+    : material(material_at),
+      symmetry(table.symmetry),
+      to(rgb_to_rgb(table.color_space(), options.color_space.value_or(table.color_space()))) {
   if (!table.is_factored()) {
     other.emplace<DenseRest>(table, material);
-    film = interpolated_film(table.film_reflectance, material);
+    film = interpolated_film(table.film_reflectance, material, to);
     return;
   }
-  const BoundWaves waves(table, material, film_kernels(arithmetic));
+  const BoundWaves waves(table, material, film_kernels(options.arithmetic), to);
   film = folded_film(waves);
   if (symmetry == Symmetry::isotropic)
     separable = fit_isotropic(waves);
@@ -51,7 +54,7 @@ BoundValues::BoundValues(const Table& table, const Material& material_at, Arithm
 
 Rgb BoundValues::other_rest(const Vec3& wo, const Vec3& wi) const {
   if (const auto* factored = std::get_if<AnisotropicSeparable>(&other)) return to_rgb(factored->rest(wo, wi));
-  return std::get<DenseRest>(other).rest(Parameters(), wo, wi);
+  return to * std::get<DenseRest>(other).rest(Parameters(), wo, wi);
 }
 
 Rgb BoundValues::film_reflectance(double cosine) const {
@@ -61,8 +64,10 @@ Rgb BoundValues::film_reflectance(double cosine) const {
 
 void BoundValues::visit_azimuth_mean(const Vec3& wo,
                                      const std::function<void(const OfCosine&)>& visit) const {
-  if (const auto* dense = std::get_if<DenseRest>(&other))
-    return visit(DenseRest::AzimuthMean(*dense, Parameters(), wo));
+  if (const auto* dense = std::get_if<DenseRest>(&other)) {
+    const DenseRest::AzimuthMean mean_rest(*dense, Parameters(), wo);
+    return visit([&](double cos_i) { return to * mean_rest(cos_i); });
+  }
   if (is_separable())
     return visit([&](double cos_i) {
       return to_rgb(separable.rest(static_cast<float>(wo.z), static_cast<float>(cos_i)));

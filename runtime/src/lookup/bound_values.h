@@ -15,7 +15,7 @@ inline namespace v1 {
 
 struct BoundValues {
   // `material` is that of the table with the parameters of the point, which lie in the grid.
-  BoundValues(const Table& table, const Material& material, Arithmetic arithmetic);
+  BoundValues(const Table& table, const Material& material, const BindOptions& options);
 
   static constexpr int kFilmCosines = 1025;
 
@@ -37,6 +37,7 @@ struct BoundValues {
 
   Material material;
   Symmetry symmetry;
+  ColorMatrix to;            // from the colours of the table to those of all values here
   double noise = 0;          // relative standard error of a factored rest
   std::vector<Color4> film;  // reflectance at even cosines, and one node more
   Separable separable;

@@ -23,13 +23,12 @@ Parameters checked(const Table& table, const Parameters& parameters, OutsideGrid
 
 }  // namespace
 
-TableBsdf::TableBsdf(const Table& table, const Parameters& parameters, OutsideGrid outside,
-                     Arithmetic arithmetic)
+TableBsdf::TableBsdf(const Table& table, const Parameters& parameters, const BindOptions& options)
     : bound_(std::make_shared<BoundTable>(
-          table, checked(table, parameters, outside).applied_to(table.material), arithmetic)) {}
+          table, checked(table, parameters, options.outside).applied_to(table.material), options)) {}
 
-TableBsdf Table::bind(const Parameters& parameters, OutsideGrid outside) const {
-  return TableBsdf(*this, parameters, outside);
+TableBsdf Table::bind(const Parameters& parameters, const BindOptions& options) const {
+  return TableBsdf(*this, parameters, options);
 }
 
 const Material& TableBsdf::material() const { return bound_->material(); }
@@ -37,7 +36,7 @@ const Material& TableBsdf::material() const { return bound_->material(); }
 Rgb TableBsdf::film_reflectance(double cosine) const { return bound_->film_reflectance(cosine); }
 
 Rgb TableBsdf::dirac(const Vec3& wo) const {
-  return bound_->is_smooth() && wo.z > 0 ? bound_->film_reflectance(wo.z) : Rgb();
+  return bound_->is_smooth() && wo.z > 0 ? bound_->dirac(wo.z) : Rgb();
 }
 
 void TableBsdf::eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f) const {
@@ -67,15 +66,15 @@ EvalPdf TableBsdf::eval_pdf(const Vec3& wo, const Vec3& wi) const {
   return bound_->eval_pdf(wo, wi);
 }
 
-EvalAndSample TableBsdf::eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const {
+EvalAndSample TableBsdf::eval_and_sample(const Vec3& wo, const Vec3& wi, const Random3& u) const {
   if (wo.z <= 0) return {};
-  if (wi.z <= 0) return {{}, bound_->sample(wo, rng)};
-  return bound_->eval_and_sample(wo, wi, rng);
+  if (wi.z <= 0) return {{}, bound_->sample(wo, u)};
+  return bound_->eval_and_sample(wo, wi, u);
 }
 
-std::optional<BsdfSample> TableBsdf::sample(const Vec3& wo, Rng& rng) const {
+std::optional<BsdfSample> TableBsdf::sample(const Vec3& wo, const Random3& u) const {
   if (wo.z <= 0) return {};
-  return bound_->sample(wo, rng);
+  return bound_->sample(wo, u);
 }
 
 }  // namespace v1

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "runtime/src/fit/dense_albedos.h"
@@ -44,8 +45,10 @@ struct TexturedEnd {
 };
 
 struct TexturedData {
-  TexturedData(const Table& table, Arithmetic arithmetic)
+  TexturedData(const Table& table, const BindOptions& options)
       : material(table.material),
+        to(rgb_to_rgb(table.color_space(), options.color_space.value_or(table.color_space()))),
+        least(options.clip_negative ? 0 : std::numeric_limits<double>::lowest()),
         film(table.material, table.is_factored() && !is_layered(table) &&
                                  FactorFrame(table.material, reaches_below(table)).is_warped()),
         facets(table.material.roughness),
@@ -53,7 +56,7 @@ struct TexturedData {
     if (is_layered(table)) {
       layered.emplace(table);
     } else if (table.is_factored()) {
-      rest.emplace(table, arithmetic);
+      rest.emplace(table, options.arithmetic);
     } else {
       dense.emplace(table);
       albedos.emplace(table);
@@ -79,6 +82,11 @@ struct TexturedData {
     if (kind == TexturedKind::layered) return layered->absorption()[3];
     if (kind != TexturedKind::dense) return rest->media().absorption[3];
     return material.scatters() || material.has_multiple_facets() ? 0 : 1;
+  }
+
+  // Returns a colour of the table as the caller wants it.
+  Rgb colors(const Rgb& color) const {
+    return transform(to * color, [this](double c) { return std::max(c, least); });
   }
 
   // Returns B B over T T; one exponential serves both.
@@ -118,6 +126,8 @@ struct TexturedData {
 
   TexturedKind kind;
   Material material;
+  ColorMatrix to;                      // from the colours of the table to the caller's
+  double least;                        // of each component
   std::optional<TexturedRest> rest;    // of a factored table,
   std::optional<LayeredRest> layered;  // of one with a layered film
   std::optional<DenseRest> dense;      // or of a dense one

@@ -18,8 +18,8 @@ float rest_exponent(const PigmentCosines& pigment, float absorption) {
 
 }  // namespace
 
-TexturedTable::TexturedTable(const Table& table, Arithmetic arithmetic)
-    : data_(std::make_shared<TexturedData>(table, arithmetic)) {}
+TexturedTable::TexturedTable(const Table& table, const BindOptions& options)
+    : data_(std::make_shared<TexturedData>(table, options)) {}
 
 std::size_t TexturedTable::bytes() const { return data_->bytes(); }
 
@@ -62,7 +62,8 @@ SUNBEAM_ALWAYS_INLINE auto TexturedTable::At::with_lookup(const Vec3& wo, Call c
 
 Rgb TexturedTable::At::dirac(const Vec3& wo) const {
   if (!data_->smooth || wo.z <= 0) return {};
-  return with_lookup(wo, [&](const auto& lookup, const auto&) { return lookup.mirror_reflectance(wo); });
+  return data_->colors(
+      with_lookup(wo, [&](const auto& lookup, const auto&) { return lookup.mirror_reflectance(wo); }));
 }
 
 double TexturedTable::At::albedo(const Vec3& wo) const {
@@ -70,43 +71,51 @@ double TexturedTable::At::albedo(const Vec3& wo) const {
   return with_lookup(wo, [&](const auto& lookup, const auto& viewer) { return lookup.albedo(viewer); });
 }
 
+template <class Lookup, class Viewer>
+inline EvalPdf TexturedTable::At::eval_pdf_for(const Lookup& lookup, const Viewer& viewer, const Vec3& wo,
+                                               const Vec3& wi) const {
+  const EvalPdf at = lookup.eval_pdf(viewer, wo, wi);
+  return {data_->colors(at.f), at.pdf};
+}
+
 // A direction of the first surface, whose mirror direction is a Dirac of a smooth film, or of the rest.
 template <class Lookup, class Viewer>
 inline std::optional<BsdfSample> TexturedTable::At::sample_for(const Lookup& lookup, const Viewer& viewer,
-                                                               const Vec3& wo, Rng& rng) const {
+                                                               const Vec3& wo, const Random3& u) const {
   const double chance{viewer.first_chance};
   Vec3 wi;
-  if (rng.uniform() < chance) {
-    if (data_->smooth)
-      return BsdfSample{{-wo.x, -wo.y, wo.z}, lookup.mirror_reflectance(wo) / chance, true, 0};
-    const FloatTurn turn(rng);
-    wi = viewer.facets.mirrored(data_->facets, wo, turn, uniform_float(rng));
+  if (u[0] < chance) {
+    if (data_->smooth) {
+      const Rgb weight = data_->colors(lookup.mirror_reflectance(wo)) / chance;
+      return BsdfSample{{-wo.x, -wo.y, wo.z}, weight, true, 0};
+    }
+    wi = viewer.facets.mirrored(data_->facets, wo, FloatTurn(u[1]), static_cast<float>(u[2]));
   } else {
-    wi = at_random_azimuth(rest_density_.sample(rng), rng);
+    wi = at_azimuth(rest_density_.sample(u[1]), FloatTurn(u[2]));
   }
   if (wi.z <= 0) return {};
-  const EvalPdf at = lookup.eval_pdf(viewer, wo, wi);
+  const EvalPdf at = eval_pdf_for(lookup, viewer, wo, wi);
   if (at.pdf <= 0) return {};
   return BsdfSample{wi, at.f * (wi.z / at.pdf), false, at.pdf};
 }
 
 EvalPdf TexturedTable::At::eval_pdf(const Vec3& wo, const Vec3& wi) const {
   if (wo.z <= 0 || wi.z <= 0) return {};
-  return with_lookup(wo,
-                     [&](const auto& lookup, const auto& viewer) { return lookup.eval_pdf(viewer, wo, wi); });
+  return with_lookup(
+      wo, [&](const auto& lookup, const auto& viewer) { return eval_pdf_for(lookup, viewer, wo, wi); });
 }
 
-std::optional<BsdfSample> TexturedTable::At::sample(const Vec3& wo, Rng& rng) const {
+std::optional<BsdfSample> TexturedTable::At::sample(const Vec3& wo, const Random3& u) const {
   if (wo.z <= 0) return {};
   return with_lookup(
-      wo, [&](const auto& lookup, const auto& viewer) { return sample_for(lookup, viewer, wo, rng); });
+      wo, [&](const auto& lookup, const auto& viewer) { return sample_for(lookup, viewer, wo, u); });
 }
 
-EvalAndSample TexturedTable::At::eval_and_sample(const Vec3& wo, const Vec3& wi, Rng& rng) const {
+EvalAndSample TexturedTable::At::eval_and_sample(const Vec3& wo, const Vec3& wi, const Random3& u) const {
   if (wo.z <= 0) return {};
-  if (wi.z <= 0) return {{}, sample(wo, rng)};
+  if (wi.z <= 0) return {{}, sample(wo, u)};
   return with_lookup(wo, [&](const auto& lookup, const auto& viewer) {
-    return EvalAndSample{lookup.eval_pdf(viewer, wo, wi), sample_for(lookup, viewer, wo, rng)};
+    return EvalAndSample{eval_pdf_for(lookup, viewer, wo, wi), sample_for(lookup, viewer, wo, u)};
   });
 }
 

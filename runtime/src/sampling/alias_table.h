@@ -52,14 +52,23 @@ class AliasTable {
     return drawn;
   }
 
-  // Draws a bin, by bits in place of a choice, which a processor would guess wrong.
-  std::uint32_t draw(std::uint32_t random) const {
-    const std::uint32_t bin = random / kWhole, packed = bins_[bin];
-    const std::uint32_t stays = random % kWhole < threshold(packed), other = alias(packed);
-    return other ^ ((other ^ bin) & (0 - stays));
+  // A bin, and what is left in [0, 1) of the number that chose it.
+  struct Drawn {
+    std::uint32_t bin;
+    float left;
+  };
+  // Draws a bin by u in [0, 1).
+  Drawn draw(double u) const {
+    const double scaled = u * kBins;
+    const auto bin = static_cast<std::uint32_t>(scaled);
+    const double inside = scaled - bin, stays = threshold(bins_[bin]) / double{kWhole};
+    if (inside < stays) return {bin, below_one(inside / stays)};
+    return {alias(bins_[bin]), below_one((inside - stays) / (1 - stays))};
   }
 
  private:
+  static float below_one(double x) { return std::min(static_cast<float>(x), 0x1.fffffep-1f); }
+
   // The chance that a bin stands for itself, of kWhole, is in the high bits, and the bin for which it stands
   // otherwise in the low ones. One that always stands for itself is its own alias.
   static constexpr std::uint32_t kWhole = (1ull << 32) / kBins;

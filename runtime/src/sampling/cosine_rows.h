@@ -40,14 +40,14 @@ class CosineRows {
   }
 
   // Draws the root of cos(theta_i), > 0.
-  float sample(int viewer, Rng& rng) const {
-    const std::size_t k = rows_[static_cast<std::size_t>(viewer)].draw(rng.next());
+  float sample(int viewer, double u) const {
+    const auto [k, left] = rows_[static_cast<std::size_t>(viewer)].draw(u);
     const float* ends = density_.data() + static_cast<std::size_t>(viewer) * kNodes + k;
-    // The greater of two uniform numbers has a density that rises from 0, the lesser one that falls to it.
-    const float a = 1 - uniform_float(rng), b = 1 - uniform_float(rng);
-    const float rises = uniform_float(rng) * (ends[0] + ends[1]) < ends[1];
-    const float inside = std::min(a, b) + rises * std::abs(a - b);
-    return (static_cast<float>(k) + inside) * (1.0f / kIntervals);
+    // The distribution over the interval is a x^2 / 2 + (1 - a / 2) x with the slope a of the density.
+    const float x = 1 - left, low = ends[0], high = ends[1];
+    const float rising = std::max(low * low + x * (high - low) * (high + low), 0.0f);
+    const float inside = x * (low + high) / (low + std::sqrt(rising) + 1e-30f);
+    return (static_cast<float>(k) + std::min(inside, 1.0f)) * (1.0f / kIntervals);
   }
 
  private:

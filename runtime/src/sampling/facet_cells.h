@@ -37,17 +37,15 @@ class FacetCells {
     FloatTurn turn;
     float height;
   };
-  static Point even(Rng& rng) {
-    const FloatTurn turn(rng);
-    return {turn, uniform_float(rng)};
-  }
-  Point sample(int row, Rng& rng) const {
-    const std::uint32_t cell = rows_[static_cast<std::size_t>(row)].draw(rng.next());
-    const std::uint32_t random = rng.next();  // its highest bit chooses the cell or its mirror image
-    const std::uint32_t turn = (cell / kHeights) ^ ((random >> 31) * (2 * kTurns - 1));
-    const float inside = static_cast<float>((random << 1) >> 8) * 0x1p-24f;
-    return {FloatTurn(turn, inside),
-            (static_cast<float>(cell % kHeights) + uniform_float(rng)) * (1.0f / kHeights)};
+  static Point even(double u, double v) { return {FloatTurn(u), static_cast<float>(v)}; }
+  // The first number chooses the cell; what is left of it lies across the heights. The second one lies across
+  // the turns of the cell and then of its mirror image.
+  Point sample(int row, double u, double v) const {
+    const auto [cell, left] = rows_[static_cast<std::size_t>(row)].draw(u);
+    const double whole = v < 0.5 ? 0 : 1;
+    const std::uint32_t mirrored = v < 0.5 ? 0 : 2 * kTurns - 1;
+    return {FloatTurn((cell / kHeights) ^ mirrored, static_cast<float>(2 * v - whole)),
+            (static_cast<float>(cell % kHeights) + left) * (1.0f / kHeights)};
   }
 
   // Returns the cells that the normals along h fall into. Stretched to roughness 1 and times r (facets.h),

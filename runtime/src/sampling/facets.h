@@ -10,18 +10,13 @@
 
 #include "runtime/src/base/color4.h"
 #include "runtime/src/sampling/float_turn.h"
-#include "sunbeam/core/rng.h"
 #include "sunbeam/detail/roughness.h"
 
 namespace sunbeam {
 inline namespace v1 {
 
-// Draws a number in [0, 1) of 24 random bits.
-inline float uniform_float(Rng& rng) { return static_cast<float>(rng.next() >> 8) * 0x1p-24f; }
-
 // Returns a unit vector. The floats' length is off by 1e-7, and its inverse by Newton's step from 1 by 1e-14.
-inline Vec3 at_random_azimuth(double cosine, Rng& rng) {
-  const FloatTurn phi(rng);
+inline Vec3 at_azimuth(double cosine, const FloatTurn& phi) {
   const double x{phi.cosine}, y{phi.sine};
   const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) * (1.5 - 0.5 * (x * x + y * y));
   return {sine * x, sine * y, cosine};

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "sunbeam/core/rng.h"
 #include "sunbeam/core/vec.h"
 
 namespace sunbeam {
@@ -25,14 +24,19 @@ struct FloatTurn {
     cosine = middle_c * c - middle_s * s;
     sine = middle_s * c + middle_c * s;
   }
-  // Draws a uniform azimuth by one number.
-  explicit FloatTurn(Rng& rng) : FloatTurn(rng.next()) {}
+  // Takes a turn's part u in [0, 1).
+  explicit FloatTurn(double u) : FloatTurn(Step(u)) {}
 
   float cosine, sine;
 
  private:
-  explicit FloatTurn(std::uint32_t random)
-      : FloatTurn(random >> 27, static_cast<float>((random << 5) >> 8) * 0x1p-24f) {}
+  struct Step {
+    explicit Step(double u)
+        : step(static_cast<std::uint32_t>(u * kSteps)), inside(static_cast<float>(u * kSteps - step)) {}
+    std::uint32_t step;
+    float inside;
+  };
+  explicit FloatTurn(const Step& at) : FloatTurn(at.step, at.inside) {}
 
   struct Middle {
     float cosine, sine;

@@ -77,7 +77,7 @@ TEST(TableExact, DiracWeightIsAiry) {
       Material m = table.material;
       m.film_thickness_nm = lerp(rng.uniform(), 300, 340);
       const double cosine = lerp(rng.uniform(), 0.05, 1);
-      const TableBsdf bsdf(table, Parameters::of(m), OutsideGrid::refuse);
+      const TableBsdf bsdf(table, Parameters::of(m));
       for (int c = 0; c < 3; ++c) {
         const auto over_cosine = [&](double x) { return airy_of(m, x, c); };
         const auto over_thickness = [&](double d) {
@@ -214,7 +214,7 @@ TEST(TableExact, EnergyIsNeverCreated) {
       Rng rng(5, 0);
       for (int k = 0; k < 50; ++k) {
         const Parameters parameters{lerp(rng.uniform(), 300, 330), lerp(rng.uniform(), 1.4, 1.5), 0};
-        const TableBsdf bsdf(table, parameters, OutsideGrid::refuse);
+        const TableBsdf bsdf(table, parameters);
         for (int j = 0; j < 5; ++j) {
           const double cosine = lerp(rng.uniform(), 0.02, 1);
           EXPECT_LT(max_component(bsdf.albedo(direction_from_cosine(cosine, 0))),

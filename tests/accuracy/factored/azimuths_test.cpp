@@ -19,7 +19,7 @@ TEST(Azimuths, AreInterpolatedByCubics) {
   for (const std::string path : {"sum", "product"}) {
     const Recipe recipe = one_point(path);
     const Table table = bake_table(recipe, {.seed = 1, .threads = 0, .on_progress = {}});
-    const TableBsdf bsdf(table, Parameters::of(table.material), OutsideGrid::refuse);
+    const TableBsdf bsdf(table, Parameters::of(table.material));
     const ExactRest exact(table.material, recipe.spectrum.wavelengths(table.material));
     const std::vector<Axis> axes = direction_axes(recipe, "");
     const Vec3 wo = direction_from_cosine(axes[0].nodes[8], 0);

@@ -9,9 +9,7 @@ namespace {
 using test::FactoredTable;
 
 // Between all nodes.
-TableBsdf between_nodes(const Table& table) {
-  return TableBsdf(table, {433, 1.15, 0.21}, OutsideGrid::refuse);
-}
+TableBsdf between_nodes(const Table& table) { return TableBsdf(table, {433, 1.15, 0.21}); }
 
 const Vec3 kOblique = spherical_direction(0.9, 0.4);
 const Vec3 kSteep = spherical_direction(0.3, 2.5);
@@ -104,7 +102,7 @@ TEST(FactoredFurnace, SmoothClearWhite) {
       const Table& table = test::factored(row, spectrum, {"material.albedo=1", "grid.absorption_per_nm=[0]"});
       for (const double thickness : {0.0, 123.0, 500.0, 1499.0})
         for (const double ior : {1.0, 1.03, 1.37, 1.99}) {
-          const TableBsdf bsdf(table, {thickness, ior, 0}, OutsideGrid::refuse);
+          const TableBsdf bsdf(table, {thickness, ior, 0});
           for (const double cosine : {1.0, 0.7, 0.3, 0.1}) {
             const Rgb albedo = bsdf.albedo(direction_from_cosine(cosine, 0));
             for (int c = 0; c < 3; ++c)

@@ -74,7 +74,8 @@ class Monochromatic {
     const double nm = lerp(rng.uniform(), shortest_, longest_);
     table_.factors.wavelengths = {{nm}, {1}, {1}, {Rgb(1)}};
     const Material material = parameters.applied_to(table_.material);
-    const BoundWaves rest(table_, material, film_kernels(Arithmetic::fastest));
+    const BoundWaves rest(table_, material, film_kernels(Arithmetic::fastest),
+                          rgb_to_rgb(ColorSpace::rec709, ColorSpace::rec709));
     const double cosine = lerp(rng.uniform(), kLeastCosine, 1);
     const auto row = rest.row(rest.direction(cosine, 0));
     const double returned = test::integrate(
@@ -133,7 +134,7 @@ TEST_P(FactoredEnergy, MeansOverChannelsAreMeansOverWavelengths) {
 template <class Measure>
 double largest_of_bound(const Table& table, Measure measure) {
   return largest(120, [&](Rng& rng) {
-    const TableBsdf bsdf(table, draw(table, rng), OutsideGrid::refuse);
+    const TableBsdf bsdf(table, draw(table, rng));
     double most = 0;
     for (int k = 0; k < 3; ++k)
       most = std::max(most,

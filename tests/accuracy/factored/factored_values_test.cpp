@@ -19,7 +19,7 @@ TEST_P(FactoredTable, AgreesWithWalks) {
   constexpr int kBatches = 32, kEstimates = 128;
   const Recipe recipe = test::recipe_of(GetParam(), "full");
   for (const Parameters& parameters : kParameters) {
-    const TableBsdf bsdf(table(), parameters, OutsideGrid::refuse);
+    const TableBsdf bsdf(table(), parameters);
     const Pfmc model(bsdf.material(), recipe.spectrum.wavelengths(bsdf.material()));
     for (const Vec3& wi : kDirections) {
       test::RgbMean live[3];

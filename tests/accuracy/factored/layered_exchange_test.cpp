@@ -91,9 +91,7 @@ double error_of(const std::vector<Rgb>& values, const std::vector<Rgb>& expected
   return difference / std::max(whole, kDarkestValue * static_cast<double>(expected.size()));
 }
 
-TableBsdf bound(const Table& table, const Point& point) {
-  return TableBsdf(table, point.parameters, OutsideGrid::refuse);
-}
+TableBsdf bound(const Table& table, const Point& point) { return TableBsdf(table, point.parameters); }
 
 // Both are walked with the same random numbers; what is left is interpolation over orders and facets.
 TEST(LayeredExchangeOfOneFilm, EqualLayersAreASingleFilm) {

@@ -42,8 +42,8 @@ TEST(Bake, NeighboursShareTheirNoise) {
   recipe.grid = "film_thickness_nm = [300, 301]";
   const Table table = bake(recipe, 1, 0);
   const std::size_t stride = table.remainder.stride(0);
-  const TableBsdf a(table, {300, recipe.base_ior, recipe.absorption_per_nm}, OutsideGrid::refuse);
-  const TableBsdf b(table, {301, recipe.base_ior, recipe.absorption_per_nm}, OutsideGrid::refuse);
+  const TableBsdf a(table, {300, recipe.base_ior, recipe.absorption_per_nm});
+  const TableBsdf b(table, {301, recipe.base_ior, recipe.absorption_per_nm});
   double sum = 0;
   int count = 0;
   for (const double c : table.remainder.axes()[3].nodes)
@@ -91,7 +91,7 @@ TEST(Bake, AzimuthsOfAnIsotropicFilmAgree) {
   const Table table = bake_table(parse_recipe(gridded().text(), "azimuths", {"table.azimuths=3"}),
                                  {.seed = 1, .threads = 0, .on_progress = {}});
   ASSERT_EQ(table.remainder.axes()[6].size(), 3u);
-  const TableBsdf bsdf(table, {300, 1.4, 0.1}, OutsideGrid::refuse);
+  const TableBsdf bsdf(table, {300, 1.4, 0.1});
   for (const double cosine : {0.208, 0.604, 1.0}) {
     const Vec3 wi = direction_from_cosine(cosine, 0);
     for (const double phi : {kPi / 2, kPi}) {

@@ -116,7 +116,7 @@ TEST_P(TexturedTables, NoMoreEnergyThanArrives) {
     for (const double ior : {1.0, 1.7}) {
       const Parameters at{thickness, ior, 0};
       const TexturedTable::At bsdf = textured().at(at);
-      const TableBsdf reference(table(), at, OutsideGrid::refuse);
+      const TableBsdf reference(table(), at);
       for (const Vec3& wo : {kOblique, kSteep, kGrazing}) {
         const test::RgbMean found = test::albedo_by_eval(bsdf, wo, 64, 4, 4);
         const Rgb dirac = bsdf.dirac(wo), most = reference.albedo(wo);
@@ -183,7 +183,7 @@ TEST_P(TexturedTables, EvalAndSampleIsEvalPdfAndThenSample) {
 // that is far from the light, or of a technique that is hardly ever chosen, is many times as large.
 TEST_P(TexturedTables, SamplesAreEven) {
   const auto textured = this->textured().at(kPoint);
-  const TableBsdf bound(table(), kPoint, OutsideGrid::refuse);
+  const TableBsdf bound(table(), kPoint);
   // A bound table averages its density over the azimuths of an anisotropic one's viewers.
   const bool is_even = bound.is_isotropic() && GetParam().name != kWithoutFrame;
   for (const Vec3& wo : {kOblique, kSteep}) {
@@ -199,7 +199,7 @@ TEST_P(TexturedTables, SamplesAreEven) {
 TEST_P(TexturedTables, AlbedoEstimateIsNear) {
   const TexturedTable& textured = this->textured();
   for (const Vec3& wo : {kOblique, kSteep}) {
-    const double expected = mean(TableBsdf(table(), kPoint, OutsideGrid::refuse).albedo(wo));
+    const double expected = mean(TableBsdf(table(), kPoint).albedo(wo));
     EXPECT_NEAR(textured.at(kPoint).albedo(wo), expected, 0.2 * expected) << wo.z;
   }
 }

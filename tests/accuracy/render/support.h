@@ -60,8 +60,8 @@ inline std::unique_ptr<const Bsdf> skin_bsdf(const SceneMaterial& scene_material
     bsdf = std::make_unique<ColorConvertedBsdf<LiveBsdf>>(LiveBsdf(material, spectrum.wavelengths(material)),
                                                           to_rec709);
   } else {
-    bsdf = std::make_unique<ColorConvertedBsdf<TableBsdf>>(
-        TableBsdf(skins.table, Parameters::of(material), OutsideGrid::refuse), to_rec709);
+    bsdf = std::make_unique<ColorConvertedBsdf<TableBsdf>>(TableBsdf(skins.table, Parameters::of(material)),
+                                                           to_rec709);
   }
   if (skins.brightness != 1) bsdf = std::make_unique<BrighterBsdf>(std::move(bsdf), skins.brightness);
   return bsdf;

@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
   if (argc != 2) return std::puts("usage: example TABLE.exr"), 2;
   try {
     const Table table = load_table_exr(argv[1]);
-    const TableBsdf skin(table, Parameters::of(table.material), OutsideGrid::clamp);
+    const TableBsdf skin(table, Parameters::of(table.material), {.outside = OutsideGrid::clamp});
     Rng rng(1, 0);
     const Vec3 viewer = direction_from_cosine(0.8, 0),
                light = direction_from_cosine(0.6, kPi);  // mirror side

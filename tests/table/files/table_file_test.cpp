@@ -160,8 +160,8 @@ TEST(TableFile, RefusesOtherNames) {
 TEST(TableFile, BsdfOfBothFormsIsTheSame) {
   const Table table = small_table();
   const Parameters between{233, 1.47, 0.1};
-  const TableBsdf exr(parse_table_exr(table_exr_bytes(table), "t"), between, OutsideGrid::refuse);
-  const TableBsdf vdb(parse_table_vdb(table_vdb_bytes(table), "t"), between, OutsideGrid::refuse);
+  const TableBsdf exr(parse_table_exr(table_exr_bytes(table), "t"), between);
+  const TableBsdf vdb(parse_table_vdb(table_vdb_bytes(table), "t"), between);
   Rng a(1, 0), b(1, 0), directions(2, 0);
   for (int k = 0; k < 1000; ++k) {
     const Vec3 wo = sample_cosine({directions.uniform(), directions.uniform()});

@@ -210,7 +210,7 @@ void expect_finite(const Table& table) {
   const test::Form form = test::forms().front();
   ASSERT_EQ(refusal(form, form.bytes(table), kName), "accepted");
   const Parameters at{250, 1.43, table.parameter_axis(2).high()};
-  expect_finite(table.bind(at, OutsideGrid::clamp));
+  expect_finite(table.bind(at, {.outside = OutsideGrid::clamp}));
   expect_finite(TexturedTable(table).at(at));
 }
 

@@ -51,9 +51,7 @@ Table make_table(Symmetry symmetry, const Roughness& roughness, const Remainder&
   return table;
 }
 
-TableBsdf bsdf_of(const Table& table) {
-  return TableBsdf(table, Parameters::of(table.material), OutsideGrid::refuse);
-}
+TableBsdf bsdf_of(const Table& table) { return TableBsdf(table, Parameters::of(table.material)); }
 
 // More light along x than along y and to the mirror side, of mirror symmetry and reciprocal.
 double brushed(const AngleCoordinates& c) {

@@ -11,14 +11,6 @@ namespace {
 
 constexpr int kPairs = 300;
 
-std::vector<Table> tables_of_every_kind() {
-  std::vector<Table> tables = test::factored_tables();
-  for (const bool rough : {false, true}) tables.push_back(test::small_table(Precision::half_float, rough));
-  tables.push_back(test::small_anisotropic_table());
-  tables.push_back(test::small_full_table());
-  return tables;
-}
-
 std::string name_of(const Table& table) {
   return table.info.at("encoding") + ", " + table.info.at("spectrum") + ", roughness " +
          to_string(table.material.roughness) +
@@ -37,7 +29,7 @@ double largest(const Rgb& x) { return std::max({std::abs(x.r), std::abs(x.g), st
 
 template <class Check>
 void for_each_table(Check check) {
-  for (const Table& table : tables_of_every_kind()) {
+  for (const Table& table : test::tables_of_every_kind()) {
     SCOPED_TRACE(name_of(table));
     check(table.bind({250, 1.45, 0.1}));
   }

@@ -78,7 +78,7 @@ constexpr double kCosines[] = {0.25, 0.5625, 1};
 
 TEST(FactoredMeaning, OfBoundTables) {
   for (const Table& table : constant_tables()) {
-    const TableBsdf bsdf(table, kNode, OutsideGrid::refuse);
+    const TableBsdf bsdf(table, kNode);
     for (const double o : kCosines)
       for (const double i : kCosines) {
         const Rgb found = bsdf.rest(direction_from_cosine(o, 0), direction_from_cosine(i, 0));
@@ -95,7 +95,7 @@ TEST(FactoredMeaning, OfTexturedTables) {
   for (const Table& table : constant_tables()) {
     const TexturedTable textured(table);
     const TexturedTable::At bsdf = textured.at(kNode);
-    const TableBsdf bound(table, kNode, OutsideGrid::refuse);
+    const TableBsdf bound(table, kNode);
     Rng rng(1, 0);
     for (const double o : kCosines)
       for (const double i : kCosines) {

@@ -103,7 +103,7 @@ TEST_P(FourDimensional, SurvivesBothFileForms) {
 
 TEST_P(FourDimensional, NodesAreExactToRounding) {
   const Table table = make_table(GetParam());
-  const TableBsdf bsdf(table, parameters_of(table), OutsideGrid::refuse);
+  const TableBsdf bsdf(table, parameters_of(table));
   const auto& axes = table.remainder.axes();
   for (const double cos_i : axes[3].nodes)
     for (const double phi_i : axes[4].nodes)
@@ -122,7 +122,7 @@ TEST_P(FourDimensional, NodesAreExactToRounding) {
 
 TEST_P(FourDimensional, InterpolatesWithinTheBoundEverywhere) {
   const Table table = make_table(GetParam());
-  const TableBsdf bsdf(table, parameters_of(table), OutsideGrid::refuse);
+  const TableBsdf bsdf(table, parameters_of(table));
   const double bound = interpolation_bound() + rounding_bound(GetParam());
   ASSERT_LT(bound, 0.04);  // of a function that swings by more than 1
   const double last_o = table.remainder.axes()[6].nodes.back();
@@ -157,7 +157,7 @@ TEST_P(FourDimensional, InterpolatesWithinTheBoundEverywhere) {
 // another. A reader that mixed up its axes would pass none of the tests above; this shows why.
 TEST_P(FourDimensional, HasNoSymmetryButMirrors) {
   const Table table = make_table(GetParam());
-  const TableBsdf bsdf(table, parameters_of(table), OutsideGrid::refuse);
+  const TableBsdf bsdf(table, parameters_of(table));
   const Vec3 wi = spherical_direction(0.5, 1), wo = spherical_direction(1.1, 2.5);
   const Rgb value = bsdf.rest(wo, wi);
   for (const double x : {1.0, -1.0})
@@ -173,7 +173,7 @@ TEST_P(FourDimensional, HasNoSymmetryButMirrors) {
 // Sampling and density of an anisotropic table agree too. False alarm 1e-4.
 TEST_P(FourDimensional, SamplesFollowThePdf) {
   const Table table = make_table(GetParam());
-  const TableBsdf bsdf(table, parameters_of(table), OutsideGrid::refuse);
+  const TableBsdf bsdf(table, parameters_of(table));
   const auto result = test::chi_square_of_sampling(bsdf, spherical_direction(0.8, 5), {.samples = 100000}, 1);
   EXPECT_GT(result.p_value, 1e-4);
   EXPECT_GT(result.degrees, 200);
@@ -184,7 +184,7 @@ TEST_P(FourDimensional, SamplesFollowThePdf) {
 // bins.
 TEST_P(FourDimensional, AlbedoFollowsTheViewersAzimuth) {
   const Table table = make_table(GetParam());
-  const TableBsdf bsdf(table, parameters_of(table), OutsideGrid::refuse);
+  const TableBsdf bsdf(table, parameters_of(table));
   for (const double phi : {0.0, 2.0, 6.2}) {
     const Vec3 wo = spherical_direction(0.8, phi);
     const auto sampled = test::sample_totals(bsdf, wo, 100000, 2).albedo;

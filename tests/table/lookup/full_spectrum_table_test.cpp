@@ -106,7 +106,7 @@ TEST(FoldedRestFrame, DecaysWithinTenTimesTheMean) {
 // Values and sampling of a table whose colours may be negative.
 TEST(FullSpectrumTable, BindsAndSamples) {
   const Table table = test::small_full_table();
-  const TableBsdf bsdf(table, Parameters::of(table.material), OutsideGrid::clamp);
+  const TableBsdf bsdf(table, Parameters::of(table.material), {.outside = OutsideGrid::clamp});
   const Vec3 wo = spherical_direction(0.5, 0);
   Rng rng(1, 0);
   for (int i = 0; i < 1000; ++i) {

@@ -38,15 +38,15 @@ TEST(TableBsdf, ParametersOutsideTheGrid) {
   const Table table = small_table();
   const Parameters outside{150, 1.6, 0.1}, nearest{200, 1.5, 0.1};
   try {
-    TableBsdf(table, outside, OutsideGrid::refuse);
+    TableBsdf(table, outside);
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_THAT(error.what(),
                 AllOf(HasSubstr("'film_thickness_nm'"), HasSubstr("150"), HasSubstr("200 to 400")));
   }
-  EXPECT_THROW(TableBsdf(table, {300, 1.45, 0.2}, OutsideGrid::refuse), Error);
-  EXPECT_NO_THROW(TableBsdf(table, nearest, OutsideGrid::refuse));
-  const TableBsdf clamped(table, outside, OutsideGrid::clamp), inside(table, nearest, OutsideGrid::refuse);
+  EXPECT_THROW(TableBsdf(table, {300, 1.45, 0.2}), Error);
+  EXPECT_NO_THROW(TableBsdf(table, nearest));
+  const TableBsdf clamped(table, outside, {.outside = OutsideGrid::clamp}), inside(table, nearest);
   EXPECT_EQ(clamped.material().film_thickness_nm, 200);
   EXPECT_EQ(clamped.material().base_ior, 1.5);
   Rng rng(1, 0);
@@ -63,7 +63,7 @@ TEST(TableBsdf, InterpolatesParameters) {
   const std::size_t stride = table.remainder.stride(0);
   for (std::size_t cell = 0; cell < table.remainder.cells(); ++cell)
     table.remainder.set(cell, Rgb(0.1 + 0.2 * static_cast<double>(cell / stride)));
-  const TableBsdf bsdf(table, {250, 1.45, 0.1}, OutsideGrid::refuse);
+  const TableBsdf bsdf(table, {250, 1.45, 0.1});
   EXPECT_NEAR(bsdf.rest(kOblique, spherical_direction(0.2, 3)).g, 0.2, 1e-7);
 }
 
@@ -75,14 +75,14 @@ TEST(TableBsdf, WithoutAFrameTheArrayIsTheRest) {
   for (const auto& form : test::forms()) {
     const Table loaded = form.parse(form.bytes(table), "t");
     EXPECT_TRUE(loaded == table) << form.name;
-    const TableBsdf bsdf(loaded, kBetween, OutsideGrid::refuse);
+    const TableBsdf bsdf(loaded, kBetween);
     EXPECT_NEAR(bsdf.rest(kOblique, spherical_direction(1.2, 2)).r, 0.1, 1e-7);
   }
 }
 
 // rest = T T (kd/pi + remainder) = 0.7^2 (0.5/pi + 0.1), albedo = R + pi rest for a smooth film.
 TEST(TableBsdf, ConstantTableInClosedForm) {
-  const TableBsdf bsdf(constant_table(false, 0.3, 0.1, 0.5), kBetween, OutsideGrid::refuse);
+  const TableBsdf bsdf(constant_table(false, 0.3, 0.1, 0.5), kBetween);
   const double rest = 0.49 * (0.5 * kInvPi + 0.1);
   EXPECT_NEAR(bsdf.rest(kOblique, spherical_direction(1.2, 2)).r, rest, 1e-7);
   EXPECT_NEAR(bsdf.albedo(kOblique).r, 0.3 + kPi * rest, 1e-6);
@@ -93,7 +93,7 @@ TEST(TableBsdf, ConstantTableInClosedForm) {
 
 TEST(TableBsdf, NothingBelowTheHorizon) {
   for (const bool rough : {false, true}) {
-    const TableBsdf bsdf(small_table(Precision::half_float, rough), kBetween, OutsideGrid::refuse);
+    const TableBsdf bsdf(small_table(Precision::half_float, rough), kBetween);
     Rng rng(2, 0);
     for (const Vec3& below : {spherical_direction(2, 1), Vec3{1, 0, 0}}) {
       EXPECT_EQ(bsdf.eval(kOblique, below, rng), Rgb(0));
@@ -126,7 +126,7 @@ std::vector<Named> odd_tables() {
 // directions at 4.5 standard errors: 2e-4 in all.
 TEST(TableBsdf, ProbabilitiesAddUpToOne) {
   for (const auto& [name, table] : odd_tables()) {
-    const TableBsdf bsdf(table, kBetween, OutsideGrid::refuse);
+    const TableBsdf bsdf(table, kBetween);
     for (const double theta : {0.0, 0.9, 1.4, 1.55}) {
       const Vec3 wo = spherical_direction(theta, 1);
       const auto totals = test::sample_totals(bsdf, wo, 100000, 3);
@@ -143,7 +143,7 @@ TEST(TableBsdf, ProbabilitiesAddUpToOne) {
 // Dirac or not: throughput times probability is the mirror's weight; a mirror without rest is always taken.
 TEST(TableBsdf, DiracWeight) {
   for (const double reflectance : {0.2, 1.0}) {
-    const TableBsdf bsdf(constant_table(false, reflectance, 0.1, 0.5), kBetween, OutsideGrid::refuse);
+    const TableBsdf bsdf(constant_table(false, reflectance, 0.1, 0.5), kBetween);
     const auto totals = test::sample_totals(bsdf, kOblique, 50000, 4);
     Rng rng(4, 0);
     std::optional<BsdfSample> mirror;
@@ -161,7 +161,7 @@ TEST(TableBsdf, DiracWeight) {
 TEST(TableBsdf, SamplesFollowThePdf) {
   for (const auto& [name, table] : odd_tables()) {
     if (name == "mirror") continue;  // nothing but the Dirac
-    const TableBsdf bsdf(table, kBetween, OutsideGrid::refuse);
+    const TableBsdf bsdf(table, kBetween);
     const auto result = test::chi_square_of_sampling(bsdf, kOblique, {.samples = 100000}, 5);
     EXPECT_GT(result.p_value, test::sidak(1e-4, 7)) << name;
     EXPECT_GT(result.degrees, 50) << name;
@@ -171,7 +171,7 @@ TEST(TableBsdf, SamplesFollowThePdf) {
 // Directions at the horizon, at the pole and anywhere: finite, not negative, throughput = f cos / pdf.
 TEST(TableBsdf, SoundEverywhere) {
   for (const auto& [name, table] : odd_tables()) {
-    const TableBsdf bsdf(table, kBetween, OutsideGrid::refuse);
+    const TableBsdf bsdf(table, kBetween);
     Rng rng(6, 0);
     for (const double cosine : {1.0, 0.5, 1e-3, 1e-6, 1e-12}) {
       const Vec3 wo = direction_from_cosine(cosine, 2);
@@ -196,13 +196,12 @@ TEST(TableBsdf, SoundEverywhere) {
 
 TEST(TableBsdf, EvalAndSampleIsEvalPdfAndThenSample) {
   for (const auto& [name, table] : odd_tables())
-    EXPECT_LT(test::difference_together(TableBsdf(table, kBetween, OutsideGrid::refuse), 2000, 8), 1e-6)
-        << name;
+    EXPECT_LT(test::difference_together(TableBsdf(table, kBetween), 2000, 8), 1e-6) << name;
 }
 
 // eval and pdf are deterministic and leave the generator alone.
 TEST(TableBsdf, UsesNoRandomNumbersToEvaluate) {
-  const TableBsdf bsdf(small_table(), kBetween, OutsideGrid::refuse);
+  const TableBsdf bsdf(small_table(), kBetween);
   Rng used(7, 0), fresh(7, 0);
   const Vec3 wi = spherical_direction(0.3, 2);
   EXPECT_EQ(bsdf.eval(kOblique, wi, used), bsdf.eval(kOblique, wi, used));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/src/sampling/facets.h"
+#include "sunbeam/core/rng.h"
 
 namespace sunbeam {
 namespace {
@@ -21,7 +22,8 @@ TEST(FloatTurn, IsCosineAndSine) {
 // The floats' error does not reach the length.
 TEST(FloatTurn, DirectionsAreUnitVectors) {
   Rng rng(1, 0);
-  for (int k = 0; k < 1000; ++k) EXPECT_NEAR(length(at_random_azimuth(rng.uniform(), rng)), 1, 1e-13);
+  for (int k = 0; k < 1000; ++k)
+    EXPECT_NEAR(length(at_azimuth(rng.uniform(), FloatTurn(rng.uniform()))), 1, 1e-13);
 }
 
 }  // namespace

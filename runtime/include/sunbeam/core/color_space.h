@@ -17,11 +17,14 @@ inline namespace v1 {
 
 // rec709: ITU-R BT.709-6 primaries, white x, y = 0.3127, 0.3290.
 // acescg: AP1 primaries, white x, y = 0.32168, 0.33767 (AMPAS S-2014-004).
-enum class ColorSpace { rec709, acescg };
+// rec2020: ITU-R BT.2020-2 primaries, white x, y = 0.3127, 0.3290.
+// xyz: CIE 1931 tristimulus values under the white of rec709, at which Y = 1; (1, 1, 1) is not its white.
+enum class ColorSpace { rec709, acescg, rec2020, xyz };
 
-// Returns the name that recipes and tables use: "rec709", "acescg".
+// Returns the name: "rec709", "acescg", "rec2020", "xyz".
 std::string_view to_string(ColorSpace space);
-// Returns the space of that name; throws Error "found 'S'; allowed: rec709, acescg" (the caller adds where).
+// Returns the space of that name; throws Error "found 'S'; allowed: rec709, acescg, rec2020, xyz" (the caller
+// adds where).
 ColorSpace color_space_from(std::string_view name);
 
 // A linear map between tristimulus values or linear colours, by rows.
@@ -51,7 +54,8 @@ ColorMatrix bradford(const Vec3& from, const Vec3& to);
 // illuminant.
 ColorMatrix xyz_to_rgb(const Vec3& illuminant_white, ColorSpace space);
 
-// Maps linear RGB of one space to another, adapted from white to white: (1, 1, 1) stays (1, 1, 1).
+// Maps linear RGB of one space to another, adapted from white to white: (1, 1, 1) stays (1, 1, 1), unless one
+// of them is xyz.
 ColorMatrix rgb_to_rgb(ColorSpace from, ColorSpace to);
 
 // Returns Y of a linear colour; that of (1, 1, 1) is 1.

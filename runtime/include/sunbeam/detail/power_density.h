@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "sunbeam/core/rng.h"
 #include "sunbeam/core/vec.h"
 
 namespace sunbeam {
@@ -20,10 +19,12 @@ class PowerDensity {
     upper_ = std::min(std::max(next / lower - 1, 0.0f), 1.0f);
   }
 
-  // Draws a cosine, > 0.
-  double sample(Rng& rng) const {
-    const int roots = level_ + (rng.uniform() < double{upper_} ? 1 : 0);
-    double x = 1 - rng.uniform();
+  // Draws a cosine, > 0, by u in [0, 1).
+  double sample(double u) const {
+    const double upper{upper_};
+    const bool is_upper = u < upper;
+    const int roots = level_ + (is_upper ? 1 : 0);
+    double x = is_upper ? 1 - u / upper : 1 - (u - upper) / (1 - upper);
     for (int k = 0; k < roots; ++k) x = std::sqrt(x);
     return x;
   }

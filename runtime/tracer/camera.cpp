@@ -1,7 +1,5 @@
 #include "runtime/tracer/camera.h"
 
-#include "sunbeam/detail/warp.h"
-
 namespace sunbeam {
 
 Camera::Camera(const CameraView& view, int width, int height)
@@ -18,9 +16,9 @@ Camera::Camera(const CameraView& view, int width, int height)
   lens_y_ = view.lens_radius * down;
 }
 
-Ray Camera::through_lens(const Vec3& in_focus, Rng& rng) const {
-  const double radius = std::sqrt(rng.uniform());
-  const Turn turn(rng.uniform());
+Ray Camera::through_lens(const Vec3& in_focus, const Point2& u) const {
+  const double radius = std::sqrt(u.x);
+  const Turn turn(u.y);
   const Vec3 on_lens = (radius * turn.cosine) * lens_x_ + (radius * turn.sine) * lens_y_;
   return {position_ + on_lens, normalize(in_focus - on_lens)};
 }

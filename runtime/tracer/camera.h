@@ -3,7 +3,7 @@
 
 #include "runtime/tracer/ray.h"
 #include "runtime/tracer/scene.h"
-#include "sunbeam/core/rng.h"
+#include "sunbeam/detail/warp.h"
 
 namespace sunbeam {
 
@@ -12,15 +12,15 @@ class Camera {
   Camera(const CameraView& view, int width, int height);
 
   // Returns the ray through the point (x, y) of the picture, in pixels from its top left corner; pixel (i, j)
-  // covers [i, i + 1) x [j, j + 1). A lens takes a point on it, uniformly, from `rng`; a pinhole leaves it
-  // untouched.
-  Ray ray(double x, double y, Rng& rng) const {
+  // covers [i, i + 1) x [j, j + 1). `u` in [0, 1)^2 chooses the point on a lens,
+  // uniformly.
+  Ray ray(double x, double y, const Point2& u) const {
     const Vec3 in_focus = top_left_ + x * pixel_x_ + y * pixel_y_;
-    return has_lens_ ? through_lens(in_focus, rng) : Ray{position_, normalize(in_focus)};
+    return has_lens_ ? through_lens(in_focus, u) : Ray{position_, normalize(in_focus)};
   }
 
  private:
-  Ray through_lens(const Vec3& in_focus, Rng& rng) const;
+  Ray through_lens(const Vec3& in_focus, const Point2& u) const;
 
   Vec3 position_;
   // These describe the picture at the distance in focus: its corner and one pixel to the right and down.

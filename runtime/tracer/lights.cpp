@@ -14,10 +14,10 @@ constexpr double kFarOff = std::numeric_limits<double>::infinity();
 double one_minus_cosine(double sine2) { return sine2 / (1 + std::sqrt(1 - sine2)); }
 
 // Uniform over the directions within a cone about `axis`; `height` is 1 - cos of its half angle.
-Vec3 sample_cone(const Vec3& axis, double height, Rng& rng) {
-  const double down = height * rng.uniform();
+Vec3 sample_cone(const Vec3& axis, double height, const Point2& u) {
+  const double down = height * u.x;
   const double sine = std::sqrt(down * (2 - down));
-  const Turn turn(rng.uniform());
+  const Turn turn(u.y);
   return Frame::from_normal(axis).to_world({sine * turn.cosine, sine * turn.sine, 1 - down});
 }
 
@@ -40,9 +40,9 @@ Emission sphere(const SphereLight& light, const Vec3& from, double chance) {
   return {light.radiance, chance * cone_pdf(one_minus_cosine(sine2))};
 }
 
-std::optional<LightSample> sample_quad(const QuadLight& light, const Vec3& from, double chance, Rng& rng) {
-  const double s = rng.uniform(), t = rng.uniform();
-  const Vec3 to_light = light.corner + s * light.edge_u + t * light.edge_v - from;
+std::optional<LightSample> sample_quad(const QuadLight& light, const Vec3& from, double chance,
+                                       const Point2& u) {
+  const Vec3 to_light = light.corner + u.x * light.edge_u + u.y * light.edge_v - from;
   const double distance = length(to_light);
   if (distance <= 0) return {};
   const Vec3 wi = to_light / distance;
@@ -53,12 +53,12 @@ std::optional<LightSample> sample_quad(const QuadLight& light, const Vec3& from,
 
 // Uniform over the solid angle of the sphere.
 std::optional<LightSample> sample_sphere(const SphereLight& light, const Vec3& from, double chance,
-                                         Rng& rng) {
+                                         const Point2& u) {
   const Emission emission = sphere(light, from, chance);
   if (emission.pdf <= 0) return {};
   const Vec3 to_center = light.center - from;
   const double sine2 = square(light.radius) / dot(to_center, to_center);
-  const Vec3 wi = sample_cone(normalize(to_center), one_minus_cosine(sine2), rng);
+  const Vec3 wi = sample_cone(normalize(to_center), one_minus_cosine(sine2), u);
   const double along = dot(to_center, wi);
   const double chord2 = square(light.radius) - (dot(to_center, to_center) - square(along));
   return LightSample{wi, along - std::sqrt(std::max(0.0, chord2)), emission.radiance, emission.pdf, false};
@@ -93,10 +93,11 @@ Emission Lights::environment(const Vec3& from, const Vec3& direction) const {
   return {radiance, choice_.chance(choice_.size() - 1, from) * environment_.pdf(direction)};
 }
 
-std::optional<LightSample> Lights::sample(const Vec3& from, Rng& rng) const {
+std::optional<LightSample> Lights::sample(const Vec3& from, const Random3& u) const {
   if (choice_.size() == 0) return {};
-  const LightChoice::Choice choice = choice_.choose(from, rng.uniform());
+  const LightChoice::Choice choice = choice_.choose(from, u[0]);
   const double chance = choice.chance;
+  const Point2 point = {u[1], u[2]};
   std::size_t chosen = choice.source;
   // Whether the choice fell into the next `size` sources; else it counts from behind them.
   const auto is_among = [&](std::size_t size) {
@@ -104,25 +105,26 @@ std::optional<LightSample> Lights::sample(const Vec3& from, Rng& rng) const {
     chosen -= size;
     return false;
   };
-  if (is_among(scene_.quad_lights.size())) return sample_quad(scene_.quad_lights[chosen], from, chance, rng);
+  if (is_among(scene_.quad_lights.size()))
+    return sample_quad(scene_.quad_lights[chosen], from, chance, point);
   if (is_among(scene_.sphere_lights.size()))
-    return sample_sphere(scene_.sphere_lights[chosen], from, chance, rng);
+    return sample_sphere(scene_.sphere_lights[chosen], from, chance, point);
   if (is_among(scene_.point_lights.size())) return sample_point(scene_.point_lights[chosen], from, chance);
-  if (is_among(discs_.size())) return sample_directional(chosen, chance, rng);
-  return sample_environment(chance, rng);
+  if (is_among(discs_.size())) return sample_directional(chosen, chance, point);
+  return sample_environment(chance, point);
 }
 
-std::optional<LightSample> Lights::sample_directional(std::size_t light, double chance, Rng& rng) const {
+std::optional<LightSample> Lights::sample_directional(std::size_t light, double chance,
+                                                      const Point2& u) const {
   const Disc& disc = discs_[light];
   if (disc.pdf == 0) return LightSample{disc.towards, kFarOff, disc.radiance, chance, true};
   const double radius = scene_.directional_lights[light].angle_deg * (kPi / 360);
-  const Vec3 wi = sample_cone(disc.towards, one_minus_cosine(square(std::sin(radius))), rng);
+  const Vec3 wi = sample_cone(disc.towards, one_minus_cosine(square(std::sin(radius))), u);
   return LightSample{wi, kFarOff, disc.radiance, chance * disc.pdf, false};
 }
 
-std::optional<LightSample> Lights::sample_environment(double chance, Rng& rng) const {
-  const double u = rng.uniform(), v = rng.uniform();
-  const Vec3 wi = environment_.sample({u, v});
+std::optional<LightSample> Lights::sample_environment(double chance, const Point2& u) const {
+  const Vec3 wi = environment_.sample(u);
   const double density = chance * environment_.pdf(wi);
   if (density <= 0) return {};
   return LightSample{wi, kFarOff, environment_.radiance(wi), density, false};

@@ -10,7 +10,8 @@
 #include "runtime/tracer/environment.h"
 #include "runtime/tracer/light_choice.h"
 #include "runtime/tracer/scene.h"
-#include "sunbeam/core/rng.h"
+#include "sunbeam/bsdf.h"
+#include "sunbeam/detail/warp.h"
 
 namespace sunbeam {
 
@@ -35,9 +36,9 @@ class Lights {
   // `scene` must outlive this.
   explicit Lights(const Scene& scene);
 
-  // Draws a light and a direction to it. The result is empty if there is nothing to sample, or if the light
-  // chosen does not shine towards `from`.
-  std::optional<LightSample> sample(const Vec3& from, Rng& rng) const;
+  // Draws a light by the first number and a direction to it by the others. The result is empty if there is
+  // nothing to sample, or if the light chosen does not shine towards `from`.
+  std::optional<LightSample> sample(const Vec3& from, const Random3& u) const;
 
   // Returns the emission that a ray from `from` with unit `direction` sees when it meets light `light`
   // (SurfaceHit::light) after `distance`. It is black on the back side.
@@ -66,8 +67,8 @@ class Lights {
     return scene_.quad_lights.size() + scene_.sphere_lights.size() + scene_.point_lights.size();
   }
   Emission environment(const Vec3& from, const Vec3& direction) const;
-  std::optional<LightSample> sample_directional(std::size_t light, double chance, Rng& rng) const;
-  std::optional<LightSample> sample_environment(double chance, Rng& rng) const;
+  std::optional<LightSample> sample_directional(std::size_t light, double chance, const Point2& u) const;
+  std::optional<LightSample> sample_environment(double chance, const Point2& u) const;
 
   const Scene& scene_;
   Environment environment_;

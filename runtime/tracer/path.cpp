@@ -119,9 +119,9 @@ struct PathTracer::Lit {
   }
 };
 
-inline std::optional<PathTracer::Lit> PathTracer::sample_light(const Vertex& vertex, Rng& rng,
+inline std::optional<PathTracer::Lit> PathTracer::sample_light(const Vertex& vertex, const Random3& u,
                                                                PathCounts& counts) const {
-  const auto light = lights_.sample(vertex.origin(), rng);
+  const auto light = lights_.sample(vertex.origin(), u);
   if (!light || !vertex.is_above(light->wi)) return {};
   const Vec3 wi = vertex.frame.to_local(light->wi);
   if (wi.z <= 0) return {};
@@ -132,7 +132,7 @@ inline std::optional<PathTracer::Lit> PathTracer::sample_light(const Vertex& ver
   return Lit{*light, wi, shadowing};
 }
 
-Rgb PathTracer::radiance(Ray ray, Rng& rng, PathCounts& counts, FirstHit* first) const {
+Rgb PathTracer::radiance(Ray ray, Sampler& sampler, PathCounts& counts, FirstHit* first) const {
   Rgb result, throughput(1);
   std::optional<double> bsdf_pdf;
   for (int bounce = 0;; ++bounce) {
@@ -145,9 +145,10 @@ Rgb PathTracer::radiance(Ray ray, Rng& rng, PathCounts& counts, FirstHit* first)
     BsdfRoom room;
     const Vertex vertex = make_vertex(ray, *hit, room);
     if (first && bounce == 0) *first = vertex.as_first_hit(hit->distance);
-    const auto lit = sample_light(vertex, rng, counts);
-    const auto [eval, sample] = lit ? vertex.bsdf->eval_and_sample(vertex.wo, lit->wi, rng)
-                                    : EvalAndSample{{}, vertex.bsdf->sample(vertex.wo, rng)};
+    const auto lit = sample_light(vertex, sampler.next3(), counts);
+    const Random3 u = sampler.next3();
+    const auto [eval, sample] = lit ? vertex.bsdf->eval_and_sample(vertex.wo, lit->wi, u, sampler.rng())
+                                    : EvalAndSample{{}, vertex.bsdf->sample(vertex.wo, u, sampler.rng())};
     if (lit) result += throughput * lit->reflected(eval);
     if (!sample) return result;
     throughput *= sample->throughput;
@@ -163,7 +164,7 @@ Rgb PathTracer::radiance(Ray ray, Rng& rng, PathCounts& counts, FirstHit* first)
       // Colours outside Rec.709 have negative components, which weigh as much.
       const double survival =
           std::min(1.0, max_component(transform(throughput, [](double x) { return std::abs(x); })));
-      if (rng.uniform() >= survival) return result;
+      if (sampler.rng().uniform() >= survival) return result;
       throughput *= 1 / survival;
     }
     bsdf_pdf = sample->is_dirac ? std::nullopt : std::optional(sample->mis_pdf);

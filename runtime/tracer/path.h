@@ -16,8 +16,8 @@
 #include "runtime/tracer/lights.h"
 #include "runtime/tracer/pixel_sums.h"
 #include "runtime/tracer/ray.h"
+#include "runtime/tracer/sampler.h"
 #include "runtime/tracer/surface_bsdf.h"
-#include "sunbeam/core/rng.h"
 
 namespace sunbeam {
 
@@ -34,7 +34,7 @@ class PathTracer {
 
   // Returns one estimate of the radiance that arrives along `ray`; it is not finite if a BSDF returned
   // something not finite. `first` is filled in unless it is null.
-  Rgb radiance(Ray ray, Rng& rng, PathCounts& counts, FirstHit* first) const;
+  Rgb radiance(Ray ray, Sampler& sampler, PathCounts& counts, FirstHit* first) const;
 
  private:
   struct Vertex;
@@ -42,7 +42,7 @@ class PathTracer {
   using MaybeHit = std::optional<SurfaceHit>;
 
   Rgb emission(const Ray& ray, const MaybeHit& hit, std::optional<double> bsdf_pdf) const;
-  std::optional<Lit> sample_light(const Vertex& vertex, Rng& rng, PathCounts& counts) const;
+  std::optional<Lit> sample_light(const Vertex& vertex, const Random3& u, PathCounts& counts) const;
   Vertex make_vertex(const Ray& ray, const SurfaceHit& hit, BsdfRoom& room) const;
 
   const Scene& scene_;

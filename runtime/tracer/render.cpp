@@ -211,11 +211,11 @@ class Renderer {
     FirstHit first;
     PathCounts counts;
     while (sums.count() < target_) {
-      Rng rng(settings_.seed, pixel | std::uint64_t{sums.count()} << kPixelBits);
-      const double dx = rng.uniform(), dy = rng.uniform();
+      Sampler sampler(settings_.seed, pixel | std::uint64_t{sums.count()} << kPixelBits);
+      const Point2 in_pixel = sampler.next2(), on_lens = sampler.next2();
       if (!hits_.empty()) first = {};
-      const Rgb sample =
-          tracer_.radiance(camera_.ray(x + dx, y + dy, rng), rng, counts, hits_.empty() ? nullptr : &first);
+      const Rgb sample = tracer_.radiance(camera_.ray(x + in_pixel.x, y + in_pixel.y, on_lens), sampler,
+                                          counts, hits_.empty() ? nullptr : &first);
       const bool good = fits_a_picture(sample);
       sums.add(good ? sample : Rgb());
       if (!hits_.empty()) hits.add(first);

@@ -20,16 +20,15 @@ struct Grid {
   bool enters = false;  // those that a smooth film keeps out give way to the next that it lets in
 };
 
-std::vector<BoundWaves::Direction> directions_of(const BoundWaves& waves, const Grid& grid) {
-  std::vector<BoundWaves::Direction> directions;
+template <class Visit>
+void for_each_direction(const BoundWaves& waves, const Grid& grid, Visit visit) {
   for (int c = 0; c < grid.cosines; ++c)
     for (int p = 0; p < grid.phis; ++p) {
       const double x = static_cast<double>(c) / (grid.cosines - 1);
       double cosine = std::max(grid.by_root ? x * x : x, kLeastCosine);
       if (grid.enters) cosine = entering_cosine(waves.material(), cosine);
-      directions.push_back(waves.direction(cosine, grid.phis == 1 ? 0 : kPi / 2 * p / (grid.phis - 1)));
+      visit(waves.direction(cosine, grid.phis == 1 ? 0 : kPi / 2 * p / (grid.phis - 1)));
     }
-  return directions;
 }
 
 Rgb scale_of(const BoundWaves& waves, const BoundWaves::Direction& w) {
@@ -40,16 +39,20 @@ Rgb scale_of(const BoundWaves& waves, const BoundWaves::Direction& w) {
 
 // S at each node, to the front of `scales`.
 void find_scales(const BoundWaves& waves, const Grid& grid, std::vector<Color4>& scales) {
-  const auto directions = directions_of(waves, grid);
-  for (std::size_t k = 0; k < directions.size(); ++k) scales[k] = to_color4(scale_of(waves, directions[k]));
+  std::size_t k = 0;
+  for_each_direction(waves, grid,
+                     [&](const BoundWaves::Direction& w) { scales[k++] = to_color4(scale_of(waves, w)); });
 }
 
 // Q at each pair of nodes, to the front of `ratios`; both directions may be exchanged. Beyond the critical
 // angle of a smooth film both rest and S are 0, and look-ups just inside it need the limit of their quotient.
 void find_ratios(const BoundWaves& waves, const Grid& grid, std::vector<Color4>& ratios) {
-  const auto nodes = directions_of(waves, grid);
+  std::vector<BoundWaves::Direction> nodes;
   std::vector<Rgb> scales;
-  for (const auto& w : nodes) scales.push_back(scale_of(waves, w));
+  for_each_direction(waves, grid, [&](const BoundWaves::Direction& w) {
+    nodes.push_back(w);
+    scales.push_back(scale_of(waves, w));
+  });
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const auto row = waves.row(nodes[i]);
     for (std::size_t o = 0; o <= i; ++o) {

@@ -21,6 +21,11 @@ BoundWaves::BoundWaves(const Table& table, const Material& material, const FilmK
       field_(table, material),
       to_(to) {
   if (is_layered(material, table.factors.wavelengths)) layered_.emplace(table, material);
+  if (!field_.arrivals().empty()) {
+    const NdArray& arrival = field_.arrivals()[0];
+    const auto axis = [&](std::size_t k) { return BoundAxis(arrival.axes()[k], arrival.stride(k)); };
+    arrival_axes_ = {axis(0), axis(1), axis(2)};
+  }
   const bool is_sum = table.factors.exchange.empty();
   for (std::size_t k = 0; k < field_.size(); ++k)
     gain_.push_back(field_.gain(k, is_sum ? returned(table.factors, k) : 0));
@@ -91,28 +96,42 @@ BoundWaves::Direction BoundWaves::direction(double cosine, double phi) const {
   const double coordinate = frame.coordinate(cosine);
   if (layered_)
     layered_->arriving(layered_->passage(cosine, phi), material.optical_depth(), w.share);
+  else if (material.is_smooth())
+    take_smooth_shares(cosine, w);
   else
-    take_shares(cosine, phi, coordinate, w);
+    take_rough_shares(cosine, phi, coordinate, w);
   if (!exchange_.empty()) w.taps = direction_taps(axes_[0], axes_[1], coordinate, phi);
   return w;
 }
 
-void BoundWaves::take_shares(double cosine, double phi, double coordinate, Direction& w) const {
+void BoundWaves::take_smooth_shares(double cosine, Direction& w) const {
+  const Material& material = field_.material();
+  const double per_cosine = 1 / field_.frame().pigment_cosine(cosine);
+  std::array<float, kMostWavelengths> passing;
+  film_.powers(material.film_thickness_nm, material.base_ior, static_cast<float>(cosine), passing.data());
+  for (std::size_t k = 0; k < field_.size(); ++k)
+    w.share[k] = double{passing[k]} * std::exp(-field_.depth(k) * per_cosine);
+}
+
+void BoundWaves::take_rough_shares(double cosine, double phi, double coordinate, Direction& w) const {
   const Material& material = field_.material();
   const FactorFrame& frame = field_.frame();
   const double per_cosine = 1 / frame.pigment_cosine(cosine);
-  std::array<float, kMostWavelengths> passing;
-  if (material.is_smooth())
-    film_.powers(material.film_thickness_nm, material.base_ior, static_cast<float>(cosine), passing.data());
+  const double path = fringe_order(material, cosine) * material.film_thickness_nm;
+  const BoundAxis::Taps c = arrival_axes_->cosine.at(coordinate), p = arrival_axes_->phi.at(phi);
   for (std::size_t k = 0; k < field_.size(); ++k) {
-    const double decay = field_.depth(k) * per_cosine;
-    if (material.is_smooth()) {
-      w.share[k] = double{passing[k]} * std::exp(-decay);
-    } else {
-      const NdArray& arrival = field_.arrivals()[field_.slice(k)];
-      w.share[k] =
-          frame.share(arrival.interpolate(std::array{fringe_order_of(k, cosine), coordinate, phi}).r, decay);
+    const BoundAxis::Taps order = arrival_axes_->order.at(path / field_.wavelengths().nm[k]);
+    const float* values = field_.arrivals()[field_.slice(k)].values().data();
+    double arrival = 0;
+    for (int a = 0; a < order.count; ++a) {
+      const float* of_order = values + order.offset[a];
+      float sum = 0;
+      for (int b = 0; b < c.count; ++b)
+        for (int d = 0; d < p.count; ++d)
+          sum += c.weight[b] * p.weight[d] * of_order[c.offset[b] + p.offset[d]];
+      arrival += double{order.weight[a] * sum};
     }
+    w.share[k] = frame.share(arrival, field_.depth(k) * per_cosine);
   }
 }
 

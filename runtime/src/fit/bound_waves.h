@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "runtime/src/base/bound_axis.h"
 #include "runtime/src/film/film_spectrum.h"
 #include "runtime/src/fit/wave_field.h"
 #include "runtime/src/layers/layered_waves.h"
@@ -53,17 +54,24 @@ class BoundWaves {
  private:
   double fringe_order_of(std::size_t k, double cosine) const;
   double returned(const Factors& factors, std::size_t k) const;
-  void take_shares(double cosine, double phi, double coordinate, Direction& w) const;
+  void take_smooth_shares(double cosine, Direction& w) const;
+  void take_rough_shares(double cosine, double phi, double coordinate, Direction& w) const;
   std::vector<double> exchange_point(std::size_t k) const;
   void take_exchange(const Factors& factors);
   void cut_gains(bool is_sum);
   double visits(const Row& i, const Direction& o, std::size_t k) const;
   std::vector<double> leaving(const Row& from, std::span<const Direction> to) const;
 
+  // The axes of the arrivals, each of which is over (fringe_order, cos_theta, phi).
+  struct ArrivalAxes {
+    BoundAxis order, cosine, phi;
+  };
+
   FilmSpectrum film_;
   WaveField field_;
   ColorMatrix to_;
-  std::optional<LayeredWaves> layered_;  // of a layered film, else film_ serves
+  std::optional<ArrivalAxes> arrival_axes_;  // of a rough film of one layer
+  std::optional<LayeredWaves> layered_;      // of a layered film, else film_ serves
   std::vector<double> gain_;
   std::vector<Axis> axes_;                    // (cos_theta, phi) of exchange
   std::vector<std::vector<float>> exchange_;  // of each wavelength, (direction, direction)

@@ -1,6 +1,6 @@
 #include "runtime/src/lookup/bound_sampling.h"
 
-#include "sunbeam/detail/ggx.h"
+#include "runtime/src/sampling/facet_moments.h"
 
 namespace sunbeam {
 inline namespace v1 {
@@ -21,8 +21,8 @@ std::vector<Vec3> viewers_at(double cosine, Symmetry symmetry) {
   return viewers;
 }
 
-// Adds the row of `viewers` and returns their albedo.
-double add_rest_row(const BoundValues& values, const std::vector<Vec3>& viewers, CosineRows& rows) {
+// The density of the rest over the root of the light's cosine at the nodes of CosineRows, in any unit.
+std::vector<double> rest_density(const BoundValues& values, const std::vector<Vec3>& viewers) {
   std::vector<double> density(CosineRows::kNodes);
   for (const Vec3& wo : viewers)
     values.visit_azimuth_mean(wo, [&](const BoundValues::OfCosine& mean_rest) {
@@ -34,50 +34,35 @@ double add_rest_row(const BoundValues& values, const std::vector<Vec3>& viewers,
             static_cast<double>(viewers.size());
       }
     });
-  return rows.add_row(density);
+  return density;
 }
 
-struct Moments {
-  double first = 0, second = 0;
-  double least_cosine = 1;  // of what is drawn
-};
-
-// First and second moment over a cell, by midpoints, of f_first cos / density: R G2 / G1 times the bounded
-// cap's share of the whole.
-Moments first_moments(const BoundValues& values, const Ggx& normals, const Vec3& wo, std::size_t cell,
-                      int nodes) {
-  Moments sum;
-  for (int k = 0; k < nodes * nodes; ++k) {
-    const double turn = static_cast<double>(cell / FacetCells::kHeights) + (k % nodes + 0.5) / nodes;
-    const double height = static_cast<double>(cell % FacetCells::kHeights) + (k / nodes + 0.5) / nodes;
-    const Vec3 wi =
-        normals.sample_mirrored(wo, {turn / (2 * FacetCells::kTurns), height / FacetCells::kHeights});
-    sum.least_cosine = std::min(sum.least_cosine, wi.z);
-    if (wi.z <= 0) continue;
-    const Vec3 h = normalize(wo + wi);
-    const double weight = normals.reflection(wo, wi, h) * wi.z / normals.reflection_pdf_bounded(wo, h);
-    const double power = std::max(0.0, mean(values.film_reflectance(dot(wo, h)))) * weight / (nodes * nodes);
-    sum.first += power;
-    sum.second += power * power * (nodes * nodes);
-  }
-  return sum;
+// The film's reflectance, mean over channels, at the cosines of BoundValues::film.
+std::vector<float> mean_film(const BoundValues& values) {
+  std::vector<float> means;
+  for (const Color4& r : values.film) means.push_back(std::max((r[0] + r[1] + r[2]) / 3, 0.0f));
+  return means;
 }
 
 // Adds the viewer's row and returns the albedo. Cells are drawn by the root of their second moment, which
-// makes the variance least; near the horizon, where light rises steeply and ends, it takes more nodes.
-double add_first_row(const BoundValues& values, const Vec3& wo, FacetCells& cells) {
-  constexpr int kNodes = 1, kHorizonNodes = 4;
-  constexpr double kHorizon = 0.1;
-  // Of the mean: neighbouring viewers may have light where this has none.
-  constexpr double kLeastShare = 0.005;
-  const Ggx normals(values.material.roughness);
-  std::vector<double> power(FacetCells::kCells);
+// makes the variance least.
+double add_first_row(const std::vector<float>& film, const FacetMoments& moments, int row,
+                     FacetCells& cells) {
+  constexpr double kLeastShare = 0.005;  // of the mean: neighbours may have light where this viewer has none
+  std::array<double, FacetCells::kCells> power;
   double albedo = 0;
-  for (std::size_t cell = 0; cell < power.size(); ++cell) {
-    Moments moments = first_moments(values, normals, wo, cell, kNodes);
-    if (moments.least_cosine < kHorizon) moments = first_moments(values, normals, wo, cell, kHorizonNodes);
-    power[cell] = std::sqrt(moments.second);
-    albedo += moments.first / FacetCells::kCells;
+  for (std::size_t k = 0; k < power.size(); ++k) {
+    const FacetMoments::Cell cell = moments.cell(row, k);
+    float first = 0, second = 0;
+    for (const FacetMoments::Node& node : cell.nodes) {
+      const float of_node =
+          lerp(film.data(), EvenPosition(node.cosine, BoundValues::kFilmCosines)) * node.weight;
+      first += of_node;
+      second += of_node * of_node;
+    }
+    const auto count = static_cast<float>(cell.count);
+    power[k] = double{std::sqrt(second / count)};
+    albedo += double{first / (count * FacetCells::kCells)};
   }
   for (double& p : power) p = std::max(p, kLeastShare * albedo);
   cells.add_row(power);
@@ -95,12 +80,15 @@ double first_albedo(const BoundValues& values, const std::vector<Vec3>& viewers)
 
 BoundSampling::BoundSampling(const BoundValues& values) {
   const bool has_cells = !values.material.is_smooth() && values.material.roughness.is_isotropic();
+  const auto moments = has_cells ? facet_moments(values.material.roughness) : nullptr;
+  const std::vector<float> film = mean_film(values);
   for (int row = 0; row < kViewers; ++row) {
-    const double cosine = cosine_of_root(static_cast<double>(row) / (kViewers - 1));
-    const auto viewers = viewers_at(cosine, values.symmetry);
-    const double of_rest = add_rest_row(values, viewers, rest);
+    const auto viewers = viewers_at(FacetCells::cosine_of_row(row), values.symmetry);
+    std::vector<double> density = rest_density(values, viewers);
+    const double of_rest = rest.add_row(density);
+    rest_densities.insert(rest_densities.end(), density.begin(), density.end());
     const double of_first =
-        has_cells ? add_first_row(values, viewers[0], first) : first_albedo(values, viewers);
+        has_cells ? add_first_row(film, *moments, row, first) : first_albedo(values, viewers);
     const double sum = of_first + of_rest;
     first_chances.push_back(static_cast<float>(sum > 0 ? of_first / sum : 0.5));
   }

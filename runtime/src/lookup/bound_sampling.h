@@ -17,7 +17,8 @@ struct BoundSampling {
 
   std::vector<float> first_chances;  // of sampling the first surface, for each viewer
   CosineRows rest;
-  FacetCells first;  // empty but for an isotropic rough film
+  std::vector<float> rest_densities;  // over the root of the light's cosine: (viewer, node of CosineRows)
+  FacetCells first;                   // empty but for an isotropic rough film
 };
 
 }  // namespace v1

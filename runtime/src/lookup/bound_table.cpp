@@ -1,7 +1,5 @@
 #include "runtime/src/lookup/bound_table.h"
 
-#include "runtime/src/lookup/bound_sampling.h"
-
 namespace sunbeam {
 inline namespace v1 {
 namespace {
@@ -19,23 +17,26 @@ BoundTable::BoundTable(const Table& table, const Material& material, const BindO
   BoundSampling sampling(values_);
   cosine_rows_ = std::move(sampling.rest);
   facet_cells_ = std::move(sampling.first);
-  fill_last_lanes(sampling.first_chances);
+  fill_last_lanes(sampling);
 }
 
-void BoundTable::fill_last_lanes(const std::vector<float>& first_chances) {
+void BoundTable::fill_last_lanes(const BoundSampling& sampling) {
   Separable& nodes = values_.separable;
   for (int k = 0; k < kScales; ++k) {
     const float cosine = static_cast<float>(k) / (kScales - 1);
-    nodes.scales[k][3] = lerp(first_chances.data(), EvenPosition(std::sqrt(cosine), kRows));
+    nodes.scales[k][3] = lerp(sampling.first_chances.data(), EvenPosition(std::sqrt(cosine), kRows));
   }
   const int roots = ratio_roots();
   const auto at = [roots](int root, int count) {
     return EvenPosition(static_cast<float>(root) / static_cast<float>(roots - 1), count);
   };
   for (int o = 0; o < roots; ++o)
-    for (int i = 0; i < roots; ++i)
-      nodes.ratios[static_cast<std::size_t>(o * roots + i)][3] =
-          cosine_rows_.density(at(o, kRows), at(i, CosineRows::kNodes));
+    for (int i = 0; i < roots; ++i) {
+      const EvenPosition row = at(o, kRows), light = at(i, CosineRows::kNodes);
+      const float* densities = sampling.rest_densities.data() + row.lower * CosineRows::kNodes;
+      const float low = lerp(densities, light), high = lerp(densities + CosineRows::kNodes, light);
+      nodes.ratios[static_cast<std::size_t>(o * roots + i)][3] = low + row.upper_weight * (high - low);
+    }
 }
 
 Rgb BoundTable::rest(const Vec3& wo, const Vec3& wi) const {
@@ -86,6 +87,7 @@ SUNBEAM_ALWAYS_INLINE std::array<BoundTable::Parts, kLights> BoundTable::parts(
   const float chance = viewer.first_chance();
   const Color4 rest_pdf = (1 - chance) * kPerSolidAngle / lights.root,  // times the density over the root
       first_pdf = chance * viewer.facets.pdf_per_d * lights.d;
+  const FacetCells::Mixture mixture(facet_cells_, viewer.rows);
   const Ints4 cells = has_cells() ? FacetCells::cells(facets_.u, viewer.facets, lights) : Ints4{};
 
   std::array<Parts, kLights> result;
@@ -100,7 +102,7 @@ SUNBEAM_ALWAYS_INLINE std::array<BoundTable::Parts, kLights> BoundTable::parts(
     parts.pdf = ratio[3] * rest_pdf[k];
     if (smooth_) continue;
     parts.first = lights.lobe[k] * lerp(values_.film.data(), {at.film, k});
-    parts.pdf += first_pdf[k] * (has_cells() ? facet_cells_.density(viewer.rows, cells[k]) : 1);
+    parts.pdf += first_pdf[k] * (has_cells() ? facet_cells_.density(mixture, cells[k]) : 1);
   }
   return result;
 }
@@ -124,7 +126,10 @@ SUNBEAM_ALWAYS_INLINE Vec3 BoundTable::draw(const Viewer& viewer, const Vec3& wo
     return viewer.facets.mirrored(facets_, wo, at.turn, at.height);
   }
   const int row = viewer.rows.lower + (lot - chance < (1 - chance) * upper);
-  const double root{cosine_rows_.sample(row, u[1])};
+  const auto drawn = cosine_rows_.draw(row, u[1]);
+  const Color4* density = rest_density(row, static_cast<int>(drawn.bin));
+  const double root{
+      CosineRows::root(drawn, density[0][3], density[(ratio_roots() - 1) / CosineRows::kIntervals][3])};
   return at_azimuth(root * root, FloatTurn(u[2]));
 }
 

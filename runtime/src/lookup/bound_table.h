@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "runtime/src/lookup/bound_sampling.h"
 #include "runtime/src/lookup/bound_values.h"
 #include "runtime/src/sampling/cosine_rows.h"
 #include "runtime/src/sampling/facet_cells.h"
@@ -68,7 +69,12 @@ class BoundTable {
   BsdfSample mirrored(const Viewer& viewer, const Vec3& wo) const;
   void eval_four(const Viewer& viewer, const Color4* ratios, const Vec3& wo, const Vec3* wi, Rgb* f) const;
 
-  void fill_last_lanes(const std::vector<float>& first_chances);
+  void fill_last_lanes(const BoundSampling& sampling);
+  // Returns where Q's last lane is the density of a row of cosine_rows_ at a node.
+  const Color4* rest_density(int row, int node) const {
+    const int step = (ratio_roots() - 1) / CosineRows::kIntervals;
+    return values_.separable.ratios.data() + (2 * row * ratio_roots() + node) * step;
+  }
   bool has_cells() const { return facets_.u2 == facets_.v2; }
 
   int ratio_roots() const { return values_.separable.ratio_roots; }
@@ -77,6 +83,8 @@ class BoundTable {
   static constexpr int kIntervals = Separable::kRatioRoots - 1;
   static_assert(kIntervals % (kRows - 1) == 0 && kIntervals % (CosineRows::kNodes - 1) == 0,
                 "what is linear between rows and nodes of sampling must be so between ratios");
+
+  static_assert(CosineRows::kIntervals == 2 * (kRows - 1));
 
   // The last lanes of S and Q, of every table, hold for a viewer there the chance of trying the first
   // surface, and for a pair the density of cosine_rows_.

@@ -22,14 +22,25 @@ class FacetCells {
   static constexpr int kTurns = 16, kHeights = 32, kCells = kTurns * kHeights;
   static_assert(2 * kTurns == FloatTurn::kSteps);
 
-  FacetCells() : density_(kCells * kStride) {}
+  // Returns the viewer's cosine of a row.
+  static double cosine_of_row(int row) {
+    constexpr double kLeastCosine = 1e-4;
+    return std::max(square(static_cast<double>(row) / (kRows - 1)), kLeastCosine);
+  }
 
   // Adds the rows in the order of viewers. `power` is that of the cells, turn by turn, in any unit, >= 0.
   void add_row(std::span<const double> power) {
-    rows_.emplace_back(power);
-    const auto densities = rows_.back().densities();
-    for (std::size_t cell = 0; cell < kCells; ++cell)
-      density_[cell * kStride + rows_.size() - 1] = static_cast<float>(densities[cell]);
+    share_.resize(kCells * kStride);
+    const double most = *std::max_element(power.begin(), power.end());
+    std::array<double, kCells> shares;
+    double sum = 0;
+    for (std::size_t cell = 0; cell < kCells; ++cell) {
+      shares[cell] = most > 0 ? std::max(1.0, std::round(power[cell] / most * kWholeShare)) : 1;
+      share_[cell * kStride + rows_.size()] = static_cast<std::uint16_t>(shares[cell]);
+      sum += shares[cell];
+    }
+    per_share_[rows_.size()] = static_cast<float>(kCells / sum);
+    rows_.emplace_back(shares);
   }
 
   // Describes a point in the square.
@@ -62,14 +73,28 @@ class FacetCells {
     return turn * kHeights + convert<Ints4>(max4(min4(level, last), Color4{}));
   }
 
+  // Holds what a viewer decides of densities: the mixture of two rows, each over its shares.
+  struct Mixture {
+    Mixture(const FacetCells& cells, const EvenPosition& row)
+        : row(row.lower),
+          lower((1 - row.upper_weight) * cells.per_share_[static_cast<std::size_t>(row.lower)]),
+          upper(row.upper_weight * cells.per_share_[static_cast<std::size_t>(row.lower) + 1]) {}
+    int row;
+    float lower, upper;
+  };
   // Returns the density over the square.
-  float density(const EvenPosition& row, int cell) const {
-    const float* viewers = density_.data() + static_cast<std::size_t>(cell) * kStride + row.lower;
-    return viewers[0] + row.upper_weight * (viewers[1] - viewers[0]);
+  float density(const Mixture& viewer, int cell) const {
+    const std::uint16_t* shares = share_.data() + static_cast<std::size_t>(cell) * kStride + viewer.row;
+    return viewer.lower * static_cast<float>(shares[0]) + viewer.upper * static_cast<float>(shares[1]);
+  }
+
+  std::size_t bytes() const {
+    return rows_.size() * sizeof(rows_[0]) + share_.size() * sizeof(std::uint16_t);
   }
 
  private:
   static constexpr std::size_t kStride = kRows + 1;
+  static constexpr double kWholeShare = 65535;
 
   // The half turn's cosine is x / sqrt(length2); one of its quarters is the other's mirror image.
   static Ints4 turn_at(const Color4& x, const Color4& length2) {
@@ -80,7 +105,8 @@ class FacetCells {
   static const std::array<float, kTurns / 2 - 1> kEdges;  // squared cosine at pi k / kTurns, k = 1, 2 ...
 
   std::vector<AliasTable<kCells>> rows_;
-  std::vector<float> density_;  // (cell, viewer), so that both viewers are neighbours
+  std::vector<std::uint16_t> share_;          // (cell, viewer), so that both viewers are neighbours
+  std::array<float, kRows + 1> per_share_{};  // density over the square
 };
 
 inline const std::array<float, FacetCells::kTurns / 2 - 1> FacetCells::kEdges = [] {

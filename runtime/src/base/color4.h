@@ -23,6 +23,8 @@ inline Color4 to_floats(const Doubles2& low, const Doubles2& high) {
   return _mm_movelh_ps(_mm_cvtpd_ps(low), _mm_cvtpd_ps(high));
 }
 inline Color4 sqrt4(const Color4& x) { return _mm_sqrt_ps(x); }
+// Returns a bit for each lane of a comparison, 1 where it holds.
+inline int mask_of(const Ints4& holds) { return _mm_movemask_ps(bits_as<__m128>(holds)); }
 inline Color4 min4(const Color4& a, const Color4& b) { return _mm_min_ps(a, b); }
 inline Color4 max4(const Color4& a, const Color4& b) { return _mm_max_ps(a, b); }
 
@@ -37,6 +39,7 @@ inline Color4 sqrt4(const Color4& x) {
   square_root(x, root);
   return root;
 }
+inline int mask_of(const Ints4& holds) { return -(holds[0] + 2 * holds[1] + 4 * holds[2] + 8 * holds[3]); }
 // These return the lesser and the greater of two numbers, four times; `b` where `a` is not a number.
 inline Color4 min4(const Color4& a, const Color4& b) { return select(a < b, a, b); }
 inline Color4 max4(const Color4& a, const Color4& b) { return select(a > b, a, b); }

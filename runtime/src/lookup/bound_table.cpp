@@ -57,62 +57,38 @@ inline BoundTable::Viewer::Viewer(const BoundTable& table, const Vec3& wo)
     : scale(table.values_.separable.scale(EvenPosition(std::min(static_cast<float>(wo.z), 1.0f), kScales))),
       facets(table.facets_, wo),
       ratios(std::min(facets.root, 1.0f), table.ratio_roots()),
-      rows(std::min(facets.root, 1.0f), kRows) {}
+      rows(std::min(facets.root, 1.0f), kRows),
+      mixture(table.facet_cells_, rows) {}
 
-// Where lights lie among nodes.
-struct BoundTable::Places {
-  template <int kLights>
-  Places(const FacetLights<kLights>& lights, int ratio_roots)
-      : scale(place(lights.cosine, kScales)),
-        ratio(place(lights.root, ratio_roots)),
-        film(place(lights.half_cosine, BoundValues::kFilmCosines)) {}
-
-  EvenPositions scale, ratio, film;
-
- private:
-  static EvenPositions place(const Color4& x, int nodes) {
-    const auto last = static_cast<float>(nodes - 1);
-    return {last * x, all(last)};
-  }
-  static Color4 all(float x) { return Color4{x, x, x, x}; }
-};
-
-// What eval_pdf() and sample() know of several lights of one viewer, all above the horizon.
-template <int kLights>
-SUNBEAM_ALWAYS_INLINE std::array<BoundTable::Parts, kLights> BoundTable::parts(
-    const Viewer& viewer, const Vec3& wo, const std::array<Vec3, kLights>& wi) const {
+// What eval_pdf() and sample() know of a light, which is above the horizon.
+SUNBEAM_ALWAYS_INLINE BoundTable::Parts BoundTable::parts(const Viewer& viewer, const Vec3& wo,
+                                                          const Vec3& wi) const {
   constexpr float kPerSolidAngle = static_cast<float>(kInvPi / 4);  // d(root) / d(cosine) / (2 pi)
-  const FacetLights<kLights> lights(facets_, viewer.facets, wo, wi.data());
-  const Places at(lights, ratio_roots());
+  const FacetPair pair(facets_, viewer.facets, wo, wi);
+  const Color4 last = last_nodes();
+  const EvenPositions at(last * Color4{pair.cosine, pair.root, pair.half_cosine, 0}, last);
+  const Color4 ratio = values_.separable.ratio(viewer.ratios, {at, 1});
   const float chance = viewer.first_chance();
-  const Color4 rest_pdf = (1 - chance) * kPerSolidAngle / lights.root,  // times the density over the root
-      first_pdf = chance * viewer.facets.pdf_per_d * lights.d;
-  const FacetCells::Mixture mixture(facet_cells_, viewer.rows);
-  const Ints4 cells = has_cells() ? FacetCells::cells(facets_.u, viewer.facets, lights) : Ints4{};
 
-  std::array<Parts, kLights> result;
-  SUNBEAM_UNROLL_4
-  for (int k = 0; k < kLights; ++k) {
-    const Color4 ratio = values_.separable.ratio(viewer.ratios, {at.ratio, k});
-    Parts& parts = result[static_cast<std::size_t>(k)];
-    parts.rest = separable_ ? separable_rest(viewer.scale, values_.separable.scale({at.scale, k}), ratio)
-                            : to_color4(values_.other_rest(wo, wi[static_cast<std::size_t>(k)]));
-    parts.first = Color4{};
-    parts.least = least_;
-    parts.pdf = ratio[3] * rest_pdf[k];
-    if (smooth_) continue;
-    parts.first = lights.lobe[k] * lerp(values_.film.data(), {at.film, k});
-    parts.pdf += first_pdf[k] * (has_cells() ? facet_cells_.density(mixture, cells[k]) : 1);
-  }
-  return result;
+  Parts parts{{}, {}, ratio[3] * (1 - chance) * kPerSolidAngle * pair.per_root, least_};
+  parts.rest = separable_ ? separable_rest(viewer.scale, values_.separable.scale({at, 0}), ratio)
+                          : to_color4(values_.other_rest(wo, wi));
+  if (smooth_) return parts;
+  parts.first = pair.lobe * lerp(values_.film.data(), {at, 2});
+  parts.pdf += chance * pair.pdf * (has_cells() ? cell_density(viewer, pair) : 1);
+  return parts;
+}
+
+inline float BoundTable::cell_density(const Viewer& viewer, const FacetPair& pair) const {
+  return facet_cells_.density(viewer.mixture, FacetCells::cell(facets_.u, viewer.facets, pair));
 }
 
 BoundTable::Parts BoundTable::parts(const Vec3& wo, const Vec3& wi) const {
-  return parts<1>(Viewer(*this, wo), wo, {wi})[0];
+  return parts(Viewer(*this, wo), wo, wi);
 }
 
 EvalPdf BoundTable::eval_pdf(const Vec3& wo, const Vec3& wi) const {
-  return parts<1>(Viewer(*this, wo), wo, {wi})[0].eval_pdf();
+  return parts(Viewer(*this, wo), wo, wi).eval_pdf();
 }
 
 // The first number chooses the technique; what is left of it chooses the row. Visible normals come from
@@ -138,32 +114,37 @@ BsdfSample BoundTable::mirrored(const Viewer& viewer, const Vec3& wo) const {
 }
 
 std::optional<BsdfSample> BoundTable::sample(const Vec3& wo, const Random3& u) const {
-  const Viewer viewer(*this, wo);
+  return sample(Viewer(*this, wo), wo, u);
+}
+
+SUNBEAM_ALWAYS_INLINE std::optional<BsdfSample> BoundTable::sample(const Viewer& viewer, const Vec3& wo,
+                                                                   const Random3& u) const {
   if (smooth_ && static_cast<float>(u[0]) < viewer.first_chance()) return mirrored(viewer, wo);
   const Vec3 wi = draw(viewer, wo, u);
   if (wi.z <= 0) return {};
-  return parts<1>(viewer, wo, {wi})[0].sample(wi);
+  return parts(viewer, wo, wi).sample(wi);
 }
 
 EvalAndSample BoundTable::eval_and_sample(const Vec3& wo, const Vec3& wi, const Random3& u) const {
   const Viewer viewer(*this, wo);
-  if (smooth_ && static_cast<float>(u[0]) < viewer.first_chance())
-    return {parts<1>(viewer, wo, {wi})[0].eval_pdf(), mirrored(viewer, wo)};
-  const Vec3 drawn = draw(viewer, wo, u);
-  if (drawn.z <= 0) return {parts<1>(viewer, wo, {wi})[0].eval_pdf(), {}};
-  const auto both = parts<2>(viewer, wo, {wi, drawn});
-  return {both[0].eval_pdf(), both[1].sample(drawn)};
+  return {parts(viewer, wo, wi).eval_pdf(), sample(viewer, wo, u)};
 }
 
 // parts() without what pdf needs, of four lights. `ratios` is the viewer's row of Q times its S.
 SUNBEAM_ALWAYS_INLINE void BoundTable::eval_four(const Viewer& viewer, const Color4* ratios, const Vec3& wo,
                                                  const Vec3* wi, Rgb* f) const {
-  const FacetLights<4> lights(facets_, viewer.facets, wo, wi);
-  const Places at(lights, ratio_roots());
+  const FacetLights lights(facets_, viewer.facets, wo, wi);
+  const Color4 last = last_nodes();
+  const auto place = [&](const Color4& x, int k) {
+    const Color4 all = Color4{} + last[k];
+    return EvenPositions(all * x, all);
+  };
+  const EvenPositions scales = place(lights.cosine, 0), roots = place(lights.root, 1),
+                      film = place(lights.half_cosine, 2);
   SUNBEAM_UNROLL_4
   for (int k = 0; k < 4; ++k) {
-    Color4 value = values_.separable.scale({at.scale, k}) * lerp(ratios, {at.ratio, k});
-    if (!smooth_) value += lights.lobe[k] * lerp(values_.film.data(), {at.film, k});
+    Color4 value = values_.separable.scale({scales, k}) * lerp(ratios, {roots, k});
+    if (!smooth_) value += lights.lobe[k] * lerp(values_.film.data(), {film, k});
     f[k] = lights.cosine[k] > 0 ? to_rgb(max4(value, least_)) : Rgb();
   }
 }

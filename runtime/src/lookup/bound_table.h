@@ -30,7 +30,8 @@ class BoundTable {
     EvalPdf eval_pdf() const { return {to_rgb(max4(first + rest, least)), double{pdf}}; }
     std::optional<BsdfSample> sample(const Vec3& wi) const {
       if (pdf <= 0) return {};
-      return BsdfSample{wi, eval_pdf().f * (wi.z / double{pdf}), false, double{pdf}};
+      const Color4 f = max4(first + rest, least);
+      return BsdfSample{wi, to_rgb(f * (static_cast<float>(wi.z) / pdf)), false, double{pdf}};
     }
   };
   // All directions lie above the horizon, but for those of a span.
@@ -59,12 +60,12 @@ class BoundTable {
     Color4 scale;  // S, and in the last lane the chance that sample() tries the first surface
     FacetViewer facets;
     EvenPosition ratios, rows;  // in Q and in the rows of both samplers
+    FacetCells::Mixture mixture;
   };
 
-  struct Places;
-  template <int kLights>
-  std::array<Parts, kLights> parts(const Viewer& viewer, const Vec3& wo,
-                                   const std::array<Vec3, kLights>& wi) const;
+  Parts parts(const Viewer& viewer, const Vec3& wo, const Vec3& wi) const;
+  float cell_density(const Viewer& viewer, const FacetPair& pair) const;
+  std::optional<BsdfSample> sample(const Viewer& viewer, const Vec3& wo, const Random3& u) const;
   Vec3 draw(const Viewer& viewer, const Vec3& wo, const Random3& u) const;
   BsdfSample mirrored(const Viewer& viewer, const Vec3& wo) const;
   void eval_four(const Viewer& viewer, const Color4* ratios, const Vec3& wo, const Vec3* wi, Rgb* f) const;
@@ -78,6 +79,11 @@ class BoundTable {
   bool has_cells() const { return facets_.u2 == facets_.v2; }
 
   int ratio_roots() const { return values_.separable.ratio_roots; }
+  // Returns the last nodes of S, Q and the film's reflectance.
+  Color4 last_nodes() const {
+    return Color4{float{kScales - 1}, static_cast<float>(ratio_roots() - 1),
+                  float{BoundValues::kFilmCosines - 1}, 0};
+  }
 
   static constexpr int kScales = Separable::kScaleCosines, kRows = FacetCells::kRows;
   static constexpr int kIntervals = Separable::kRatioRoots - 1;

@@ -7,6 +7,7 @@
 // the azimuth are mirror images.
 #pragma once
 
+#include <bit>
 #include <span>
 #include <vector>
 
@@ -49,28 +50,26 @@ class FacetCells {
     float height;
   };
   static Point even(double u, double v) { return {FloatTurn(u), static_cast<float>(v)}; }
-  // The first number chooses the cell; what is left of it lies across the heights. The second one lies across
-  // the turns of the cell and then of its mirror image.
+  // The first number chooses the cell, and what is left of it lies across the turns. The second one lies
+  // across the heights of the cell and then of its mirror image.
   Point sample(int row, double u, double v) const {
     const auto [cell, left] = rows_[static_cast<std::size_t>(row)].draw(u);
-    const double whole = v < 0.5 ? 0 : 1;
-    const std::uint32_t mirrored = v < 0.5 ? 0 : 2 * kTurns - 1;
-    return {FloatTurn((cell / kHeights) ^ mirrored, static_cast<float>(2 * v - whole)),
-            (static_cast<float>(cell % kHeights) + left) * (1.0f / kHeights)};
+    const std::uint32_t is_mirrored = v < 0.5 ? 0 : 1;
+    const auto height = static_cast<float>(2 * v - is_mirrored);
+    return {FloatTurn((cell / kHeights) ^ (is_mirrored * (2 * kTurns - 1)), left),
+            (static_cast<float>(cell % kHeights) + height) * (1.0f / kHeights)};
   }
 
-  // Returns the cells that the normals along h fall into. Stretched to roughness 1 and times r (facets.h),
+  // Returns the cell that the normals along h fall into. Stretched to roughness 1 and times r (facets.h),
   // with h' = (h.x, h.y, a h.z) the mirrored wo is m = e h' - wo', e = a l^2 / |h'|^2; its height is that of
   // m.z, and its azimuth has the cosine m.wo' / (|m| |wo'|) in the plane.
-  template <int kLights>
-  static Ints4 cells(float alpha, const FacetViewer& o, const FacetLights<kLights>& lights) {
-    const Color4 e = alpha * alpha * alpha * lights.l2_per_q;
-    const Color4 z = e * alpha * lights.z - o.cosine, below_top = o.r - z;
-    const Color4 along = e * (lights.x * o.x + lights.y * o.y) - alpha * o.sine2;
-    const Ints4 turn = turn_at(along, below_top * (o.r + z) * o.sine2);
-    const Color4 level = below_top * (2 * kHeights * o.pdf_per_d);
-    const Color4 last = Color4{1, 1, 1, 1} * float{kHeights - 1};
-    return turn * kHeights + convert<Ints4>(max4(min4(level, last), Color4{}));
+  static int cell(float alpha, const FacetViewer& o, const FacetPair& pair) {
+    const float e = alpha * alpha * alpha * pair.l2_per_q;
+    const float z = e * alpha * pair.z - o.cosine, below_top = o.r - z;
+    const float along = e * (pair.x * o.x + pair.y * o.y) - alpha * o.sine2;
+    const int turn = turn_at(along, below_top * (o.r + z) * o.sine2);
+    const float level = std::max(below_top * (2 * kHeights * o.pdf_per_d), 0.0f);
+    return turn * kHeights + static_cast<int>(std::min(level, float{kHeights - 1}));
   }
 
   // Holds what a viewer decides of densities: the mixture of two rows, each over its shares.
@@ -97,22 +96,25 @@ class FacetCells {
   static constexpr double kWholeShare = 65535;
 
   // The half turn's cosine is x / sqrt(length2); one of its quarters is the other's mirror image.
-  static Ints4 turn_at(const Color4& x, const Color4& length2) {
-    Ints4 turn{};
-    for (const float edge : kEdges) turn -= x * x < edge * length2;
-    return turn ^ ((x < 0) & (kTurns - 1));
+  static int turn_at(float x, float length2) {
+    const Color4 x2 = Color4{} + x * x;
+    const int passed = mask_of(x2 < length2 * kEdges[0]) | mask_of(x2 < length2 * kEdges[1]) << 4;
+    return std::bit_width(static_cast<unsigned>(passed)) ^ (x < 0 ? kTurns - 1 : 0);
   }
-  static const std::array<float, kTurns / 2 - 1> kEdges;  // squared cosine at pi k / kTurns, k = 1, 2 ...
+  // The squared cosines at pi k / kTurns, k = 1 to kTurns / 2; they fall, so that those passed come first.
+  static const std::array<Color4, 2> kEdges;
 
   std::vector<AliasTable<kCells>> rows_;
   std::vector<std::uint16_t> share_;          // (cell, viewer), so that both viewers are neighbours
   std::array<float, kRows + 1> per_share_{};  // density over the square
 };
 
-inline const std::array<float, FacetCells::kTurns / 2 - 1> FacetCells::kEdges = [] {
-  std::array<float, kTurns / 2 - 1> edges;
-  for (std::size_t k = 0; k < edges.size(); ++k)
-    edges[k] = static_cast<float>(square(std::cos(kPi * static_cast<double>(k + 1) / kTurns)));
+inline const std::array<Color4, 2> FacetCells::kEdges = [] {
+  static_assert(kTurns == 16);
+  std::array<Color4, 2> edges{};
+  for (int k = 0; k < kTurns / 2; ++k)
+    edges[static_cast<std::size_t>(k / 4)][k % 4] =
+        k + 1 == kTurns / 2 ? 0 : static_cast<float>(square(std::cos(kPi * (k + 1) / kTurns)));
   return edges;
 }();
 

@@ -49,9 +49,11 @@ struct FacetViewer {
     sine = roots[2];
     const float s2 = (1 + sine) * (1 + sine), bound = s2 + facets.least2 * c2;
     const float part = (1 - facets.least2) * s2 * cosine;
-    const Color4 quotients = Color4{bound, part, 1, 1} / Color4{2 * (part + bound * r), bound, 1, 1};
+    const float ring_sine = sine2 > 0 ? sine : 1;
+    const Color4 quotients = Color4{bound, part, 1, 1} / Color4{2 * (part + bound * r), bound, ring_sine, 1};
     pdf_per_d = quotients[0];
     bottom = quotients[1];
+    per_sine = quotients[2];
   }
 
   // Returns wo mirrored at a visible normal; fewer go below the horizon than with the whole cap. phi is
@@ -61,7 +63,7 @@ struct FacetViewer {
   Vec3 mirrored(const Facets& facets, const Vec3& wo, const FloatTurn& phi, float height) const {
     const float below_top = height * (r + bottom), z = r - below_top;
     const bool is_vertical = sine2 == 0;
-    const float ring = std::sqrt(std::max(below_top * (r + z), 0.0f)) / (is_vertical ? 1 : sine);
+    const float ring = std::sqrt(std::max(below_top * (r + z), 0.0f)) * per_sine;
     const float along = is_vertical ? 1 : x, across = y;
     const Vec3 h{double{facets.u * (ring * (phi.cosine * along - phi.sine * across) + facets.u * x)},
                  double{facets.v * (ring * (phi.sine * along + phi.cosine * across) + facets.v * y)},
@@ -72,18 +74,19 @@ struct FacetViewer {
   float x, y, cosine;
   float root;  // of the cosine
   float sine, sine2;
-  float r;       // see above
-  float bottom;  // k cosine: the cap reaches down to -bottom
+  float per_sine;  // 1 / sine, or 1 along the normal
+  float r;         // see above
+  float bottom;    // k cosine: the cap reaches down to -bottom
   float pdf_per_d;
 };
 
-// Holds the lobe and the density of a pair of directions, both above the horizon. FacetLights<1> below would
-// do, but costs a textured look-up a twentieth.
+// Holds the lobe and the density of a pair of directions, both above the horizon.
 struct FacetPair {
   FacetPair(const Facets& facets, const FacetViewer& viewer, const Vec3& wo, const Vec3& wi)
-      : cosine(static_cast<float>(wi.z)) {
-    const auto x = static_cast<float>(wo.x + wi.x), y = static_cast<float>(wo.y + wi.y),
-               z = static_cast<float>(wo.z + wi.z);
+      : x(static_cast<float>(wo.x + wi.x)),
+        y(static_cast<float>(wo.y + wi.y)),
+        z(static_cast<float>(wo.z + wi.z)),
+        cosine(static_cast<float>(wi.z)) {
     const auto ix = static_cast<float>(wi.x), iy = static_cast<float>(wi.y);
     const float l2 = x * x + y * y + z * z;
     const Color4 roots =
@@ -92,37 +95,38 @@ struct FacetPair {
     half_cosine = 0.5f * roots[2];
     const float q = facets.u2v2 * z * z + facets.v2 * x * x + facets.u2 * y * y;
     const float to_lobe = 2 * (viewer.r * cosine + roots[1] * viewer.cosine);
-    const Color4 per = Color4{1, 1, 1, 1} / Color4{q, to_lobe, 1, 1};
-    const float l2_per_q = l2 * per[0], d = facets.uv3_per_pi * l2_per_q * l2_per_q;
+    const Color4 per = Color4{1, 1, 1, 1} / Color4{q, to_lobe, root, 1};
+    per_root = per[2];
+    l2_per_q = l2 * per[0];
+    const float d = facets.uv3_per_pi * l2_per_q * l2_per_q;
     lobe = d * per[1];
     pdf = d * viewer.pdf_per_d;
   }
 
+  float x, y, z;  // of h, not normalised
+  float l2_per_q;
   float cosine;       // of wi
   float root;         // of that cosine
+  float per_root;     // 1 / root
   float half_cosine;  // between either direction and h
   float lobe;         // without the reflectance, 1/sr
   float pdf;          // of mirrored(), 1/sr
 };
 
-// Holds the same for several lights of one viewer, a lane each; what is left of four repeats others. Lights
-// below the horizon mean nothing and have a cosine of 0.
-template <int kLights>
+// Holds the lobes of four lights of one viewer, a lane each. Lights below the horizon mean nothing and have a
+// cosine of 0.
 struct FacetLights {
   FacetLights(const Facets& facets, const FacetViewer& viewer, const Vec3& wo, const Vec3* wi)
       : FacetLights(facets, viewer, {wi, &Vec3::x, wo}, {wi, &Vec3::y, wo}, {wi, &Vec3::z, wo}) {}
 
-  Color4 x, y, z;  // of h, not normalised
   Color4 cosine, root, half_cosine;
-  Color4 l2_per_q, d;
   Color4 lobe;
 
  private:
   // Holds one coordinate of the lights and of their h.
   struct Coordinate {
     Coordinate(const Vec3* wi, double Vec3::*at, const Vec3& wo) {
-      const Doubles2 low{wi[0].*at, wi[kLights > 1 ? 1 : 0].*at};
-      const Doubles2 high = kLights < 4 ? low : Doubles2{wi[kLights - 2].*at, wi[kLights - 1].*at};
+      const Doubles2 low{wi[0].*at, wi[1].*at}, high{wi[2].*at, wi[3].*at};
       light = to_floats(low, high);
       half = to_floats(low + wo.*at, high + wo.*at);
     }
@@ -131,17 +135,13 @@ struct FacetLights {
 
   FacetLights(const Facets& facets, const FacetViewer& viewer, const Coordinate& cx, const Coordinate& cy,
               const Coordinate& cz)
-      : x(cx.half),
-        y(cy.half),
-        z(cz.half),
-        cosine(select(cz.light > 0, cz.light, Color4{})),
-        root(sqrt4(cosine)) {
-    const Color4 x2 = x * x, y2 = y * y, z2 = z * z, l2 = x2 + y2 + z2;
+      : cosine(select(cz.light > 0, cz.light, Color4{})), root(sqrt4(cosine)) {
+    const Color4 x2 = cx.half * cx.half, y2 = cy.half * cy.half, z2 = cz.half * cz.half, l2 = x2 + y2 + z2;
     half_cosine = 0.5f * sqrt4(l2);
-    l2_per_q = l2 / (facets.u2v2 * z2 + facets.v2 * x2 + facets.u2 * y2);
+    const Color4 l2_per_q = l2 / (facets.u2v2 * z2 + facets.v2 * x2 + facets.u2 * y2);
     const Color4 r =
         sqrt4(cosine * cosine + facets.u2 * cx.light * cx.light + facets.v2 * cy.light * cy.light);
-    d = facets.uv3_per_pi * l2_per_q * l2_per_q;
+    const Color4 d = facets.uv3_per_pi * l2_per_q * l2_per_q;
     lobe = d * (0.5f / (viewer.r * cosine + r * viewer.cosine));  // quotients need not wait for each other
   }
 };

@@ -11,7 +11,9 @@ constexpr double kLeastShare = 0.3;    // of the channels' mean: a folded colour
 constexpr double kLeastScale = 1e-18;  // and a pigment let nothing through; its square is a float yet
 
 constexpr double kMostRatio = 1e30;  // a float yet, times two scales
-constexpr double kMostRatioError = 0.002;
+// Between nodes of Q: where fewer roots do better than that, they stay, since others take four times the
+// memory.
+constexpr double kMostFirstError = 5e-4, kMostRatioError = 0.002;
 
 // Directions at cosines that are even, or whose roots are, and at even azimuths of a quadrant.
 struct Grid {
@@ -68,22 +70,24 @@ double magnitude(const Rgb& color) {
 }
 
 // Of the rest between nodes of Q: the largest relative error that a direction has in the mean over others. A
-// layered film may be so colourful that a channel's wavelengths reach the base along quite different
-// directions.
+// film may be so colourful that a channel's wavelengths reach the base along quite different directions.
 double ratio_error(const BoundWaves& waves, const Separable& fit) {
-  constexpr int kStep = 3;  // every third interval serves
+  constexpr int kStep = 3;              // every third interval serves
+  constexpr double kLeastRoot = 0.1;    // closer to grazing there is no light to speak of
+  constexpr double kLeastWhole = 1e-4;  // of the brightest direction
   std::vector<BoundWaves::Direction> between;
   std::vector<EvenPosition> at;
   std::vector<Rgb> scales;
   std::vector<float> cosines;
   for (int k = 0; k + 1 < fit.ratio_roots; k += kStep) {
     const double root = (k + 0.5) / (fit.ratio_roots - 1);
+    if (root < kLeastRoot) continue;
     cosines.push_back(static_cast<float>(entering_cosine(waves.material(), root * root)));
     between.push_back(waves.direction(double{cosines.back()}, 0));
     scales.push_back(scale_of(waves, between.back()));
     at.emplace_back(std::sqrt(cosines.back()), fit.ratio_roots);
   }
-  double worst = 0;
+  std::vector<double> wrongs, wholes;
   for (std::size_t i = 0; i < between.size(); ++i) {
     const auto row = waves.row(between[i]);
     double wrong = 0, whole = 0;
@@ -93,20 +97,26 @@ double ratio_error(const BoundWaves& waves, const Separable& fit) {
       wrong += std::sqrt(cosines[o]) * cosines[o] * magnitude(found - rest);
       whole += std::sqrt(cosines[o]) * cosines[o] * magnitude(rest);
     }
-    if (whole > 0) worst = std::max(worst, wrong / whole);
+    wrongs.push_back(wrong);
+    wholes.push_back(whole);
   }
+  const double least = kLeastWhole * *std::max_element(wholes.begin(), wholes.end());
+  double worst = 0;
+  for (std::size_t i = 0; i < wholes.size(); ++i)
+    if (wrongs[i] > 0) worst = std::max(worst, wrongs[i] / std::max(wholes[i], least));
   return worst;
 }
 
 }  // namespace
 
 Separable fit_isotropic(const BoundWaves& waves) {
-  for (int roots = Separable::kRatioRoots;; roots = 2 * roots - 1) {
+  const bool has_layers = waves.has_layers();
+  const int most = has_layers ? Separable::kMostRatioRoots : Separable::kMostClearRoots;
+  for (int roots = has_layers ? Separable::kMostClearRoots : Separable::kRatioRoots;; roots = 2 * roots - 1) {
     Separable fit(roots);
     find_ratios(waves, {roots, 1, true, true}, fit.ratios);
-    if (waves.has_layers() && 2 * roots - 1 <= Separable::kMostRatioRoots &&
-        ratio_error(waves, fit) > kMostRatioError)
-      continue;
+    const double allowed = roots == Separable::kRatioRoots ? kMostFirstError : kMostRatioError;
+    if (2 * roots - 1 <= most && ratio_error(waves, fit) > allowed) continue;
     find_scales(waves, {Separable::kScaleCosines, 1, false}, fit.scales);
     return fit;
   }

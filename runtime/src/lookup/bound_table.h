@@ -30,8 +30,7 @@ class BoundTable {
     EvalPdf eval_pdf() const { return {to_rgb(max4(first + rest, least)), double{pdf}}; }
     std::optional<BsdfSample> sample(const Vec3& wi) const {
       if (pdf <= 0) return {};
-      const Color4 f = max4(first + rest, least);
-      return BsdfSample{wi, to_rgb(f * (static_cast<float>(wi.z) / pdf)), false, double{pdf}};
+      return BsdfSample{wi, eval_pdf().f * (wi.z / double{pdf}), false, double{pdf}};
     }
   };
   // All directions lie above the horizon, but for those of a span.

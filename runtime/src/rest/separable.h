@@ -28,7 +28,7 @@ inline Color4 separable_rest(const Color4& scale_o, const Color4& scale_i, const
 // Holds S and Q of an isotropic film. A place beyond the last node, of weight 0, may be read. The last lanes
 // are the owner's: BoundTable keeps there what its sampling looks up at the same places.
 struct Separable {
-  static constexpr int kScaleCosines = 513, kRatioRoots = 33, kMostRatioRoots = 257;
+  static constexpr int kScaleCosines = 513, kRatioRoots = 33, kMostClearRoots = 65, kMostRatioRoots = 257;
 
   explicit Separable(int roots = kRatioRoots)
       : ratio_roots(roots), ratios(static_cast<std::size_t>((roots + 1) * roots + 1)) {}

@@ -94,7 +94,6 @@ TEST_P(TexturedTables, AgreeWithBoundTables) {
 }
 
 TEST_P(TexturedTables, AgreeAtTheCornersOfTheGrid) {
-  Rng rng(10, 0);
   double most = 0;
   for (int corner = 0; corner < 8; ++corner) {
     std::array<double, 3> x;
@@ -102,8 +101,10 @@ TEST_P(TexturedTables, AgreeAtTheCornersOfTheGrid) {
       const Axis& axis = table().parameter_axis(k);
       x[k] = corner >> k & 1 ? axis.high() : axis.low();
     }
-    for (int k = 0; k < 4; ++k)
-      most = std::max(most, test::error_at(textured(), table(), {x[0], x[1], x[2]}, rng));
+    for (int k = 0; k < 4; ++k) {
+      Rng draws(6, 1 + static_cast<std::uint64_t>(4 * corner + k));
+      most = std::max(most, test::error_at(textured(), table(), {x[0], x[1], x[2]}, draws));
+    }
   }
   EXPECT_LT(most, GetParam().corners);
   RecordProperty("most", std::to_string(most));
@@ -287,7 +288,8 @@ std::vector<Case> plain_cases() {
       straight{"straight_smooth", recipe_of(0, "straight", full)};
   return {{"rough", recipe_of(0.1, "refract", full)},
           {"very_rough", recipe_of(0.5, "refract", full)},
-          {"straight", recipe_of(0.1, "straight", full)},
+          // Dark corners at grazing: 1.1 to 1.6 % of directions drawn by three seeds, whatever Q's nodes.
+          bounded({"straight", recipe_of(0.1, "straight", full)}, 0.001, 0.01, 0.02, 100),
           {"white", with_albedo(recipe_of(0.2, "refract", ""), 1)},
           // Thin films over a base without contrast, at grazing.
           bounded({"rgb3", recipe_of(0.2, "refract", "")}, 0.001, 0.01, 0.01, 100),
@@ -305,7 +307,7 @@ std::vector<Case> product_cases() {
   };
   return {usual("product", product_of(0.1, "refract", full)),
           usual("product_smooth", product_of(0, "refract", full)),
-          usual("product_straight", product_of(0.1, "straight", full)),
+          bounded({"product_straight", product_of(0.1, "straight", full)}, 0.002, 0.01, 0.02, 50),
           usual("product_rgb3", product_of(0.2, "refract", "")),
           usual("product_white", with_albedo(product_of(0.2, "refract", ""), 1)),
           bounded({"product_eumelanin", with(product_of(0.1, "refract", full), kPigment)}, 0.002, 0.01, 0.05,

@@ -19,7 +19,7 @@ struct Value {
   Rgb f;
 };
 
-void expect_values(const std::string& name, std::initializer_list<Value> values) {
+void expect_values(const std::string& name, double tolerance, std::initializer_list<Value> values) {
   const Table table = load_table_exr(std::string(SUNBEAM_SOURCE_DIR) + "/tables/golden/" + name);
   EXPECT_EQ(table.schema_version, 2);
   for (const Value& value : values) {
@@ -31,12 +31,13 @@ void expect_values(const std::string& name, std::initializer_list<Value> values)
     Rng rng(1, 0);
     const Rgb f = table.bind(at).eval(direction(value.theta_o, 0), direction(value.theta_i, value.phi), rng);
     for (int c = 0; c < 3; ++c)
-      EXPECT_NEAR(f[c], value.f[c], 1e-6 * value.f[c]) << name << ' ' << value.base_ior;
+      EXPECT_NEAR(f[c], value.f[c], tolerance * value.f[c]) << name << ' ' << value.base_ior;
   }
 }
 
+// Q of that program had 65 roots where that of bound look-ups has 33 now.
 TEST(Schema2, FactoredTableHasItsValues) {
-  expect_values("schema2_factored.exr",
+  expect_values("schema2_factored.exr", 2e-5,
                 {{1.5, 10, 180, 30,
                   Rgb(0.0028603272512555122, 0.0028603272512555122, 0.0028603272512555122) +
                       Rgb(0.12705941498279572, 0.063051149249076843, 0.015673648566007614)},
@@ -49,7 +50,7 @@ TEST(Schema2, FactoredTableHasItsValues) {
 }
 
 TEST(Schema2, DenseTableHasItsValues) {
-  expect_values("schema2_dense.exr",
+  expect_values("schema2_dense.exr", 1e-6,
                 {{1.5, 10, 180, 30,
                   Rgb(0.0028603994287550449, 0.0028603994287550449, 0.0028603994287550449) +
                       Rgb(0.12711806499730438, 0.063064247255928005, 0.015673828957373754)},

@@ -121,7 +121,7 @@ class TexturedTable {
     friend class TexturedTable;
     template <TexturedKind kKind>
     friend class TexturedLookup;
-    At(const TexturedData& data, const Parameters& parameters);
+    At(const TexturedData& data, double thickness_nm, double base_ior, double absorption_per_nm);
     template <class Call>
     auto with_lookup(const Vec3& wo, Call call) const;
     template <class Lookup, class Viewer>

@@ -5,7 +5,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 packages=(g++ cmake ninja-build ccache git python3
   libopenexr-dev libimath-dev libopenvdb-dev libembree-dev libtbb-dev libboost-iostreams-dev zlib1g-dev libpng-dev
   libcli11-dev libfmt-dev libtomlplusplus-dev nlohmann-json3-dev libxxhash-dev)
-test_packages=(libgtest-dev libgmock-dev libbenchmark-dev openexr libopenvdb-tools
+test_packages=(pkg-config libgtest-dev libgmock-dev libbenchmark-dev openexr libopenvdb-tools
   slurmctld slurmd slurm-client munge)
 
 say() { printf '\n== %s\n' "$*"; }

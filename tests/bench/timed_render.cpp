@@ -57,7 +57,7 @@ Run trace_bare(const EmbreeCeiling& ceiling, const Scene& scene, const Effort& e
     for (int x = 0; x < effort.width; ++x)
       for (int k = 0; k < effort.spp; ++k) {
         const double dx = rng.uniform(), dy = rng.uniform();
-        ceiling.trace(camera.ray(x + dx, y + dy, rng).direction, rng, counts);
+        ceiling.trace(camera.ray(x + dx, y + dy, {}).direction, rng, counts);
       }
   Run run{.seconds = thread_seconds() - start, .rays = static_cast<double>(counts.rays)};
   run.paths = static_cast<double>(effort.width) * effort.height * effort.spp;

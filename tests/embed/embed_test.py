@@ -16,6 +16,9 @@ BUILD_DIR = pathlib.Path(os.environ["SUNBEAM_BUILD_DIR"])
 HAS_VDB = os.environ["SUNBEAM_BUILD_VDB"] == "1"
 CMAKE = os.environ["CMAKE_COMMAND"]
 NM = os.environ["CMAKE_NM"]
+SOURCE = pathlib.Path(os.environ["SUNBEAM_SOURCE_DIR"])
+CXX = os.environ["CXX"]
+CXXFLAGS = os.environ.get("CXXFLAGS", "")
 EXAMPLE = pathlib.Path(__file__).resolve().parent / "example"
 
 # Packages that an embedder of plain tables may lack.
@@ -63,18 +66,31 @@ class Embedding(unittest.TestCase):
         cls.addClassCleanup(shutil.rmtree, cls.folder)
         cls.prefix = cls.folder / "prefix"
         run(CMAKE, "--install", BUILD_DIR, "--prefix", cls.prefix)
+        # As after the README's line, where find_package() looks beside the command too.
+        os.environ["PATH"] = f"{BUILD_DIR / 'bin'}{os.pathsep}{os.environ['PATH']}"
         (cls.folder / "recipe.toml").write_text(RECIPE)
         for name in ("table.exr", "table.vdb"):
             run(BINARY, "bake", "recipe.toml", "-o", name, cwd=cls.folder)
 
-    def configure(self, source, build, *options, check=True):
-        return run(CMAKE, "-G", "Ninja", "-S", source, "-B", self.folder / build, f"-DCMAKE_PREFIX_PATH={self.prefix}",
-                   "-DCMAKE_BUILD_TYPE=Release", *options, check=check)
+    def configure(self, source, build, *options, check=True, prefix=None):
+        return run(CMAKE, "-G", "Ninja", "-S", source, "-B", self.folder / build,
+                   f"-DCMAKE_PREFIX_PATH={prefix or self.prefix}", "-DCMAKE_BUILD_TYPE=Release", *options, check=check)
 
-    def build(self, source, build, *options):
-        self.configure(source, build, *options)
+    def build(self, source, build, *options, prefix=None):
+        self.configure(source, build, *options, prefix=prefix)
         run(CMAKE, "--build", self.folder / build)
         return self.folder / build / "example"
+
+    @classmethod
+    def shared_prefix(cls):
+        """The runtime as a shared library, without OpenVDB, in a prefix of its own."""
+        prefix, build = cls.folder / "shared", cls.folder / "build-shared"
+        if not prefix.exists():
+            run(CMAKE, "-G", "Ninja", "-S", SOURCE, "-B", build, "-DCMAKE_BUILD_TYPE=Release", "-DBUILD_SHARED_LIBS=ON",
+                *(f"-DSUNBEAM_BUILD_{part}=OFF" for part in ("BAKE", "TRACER", "VDB", "TESTS")))
+            run(CMAKE, "--build", build)
+            run(CMAKE, "--install", build, "--prefix", prefix)
+        return prefix
 
     def expected_eval(self, table):
         points = f"theta_i_deg,theta_o_deg,phi_deg\n{math.degrees(math.acos(0.6))!r},{math.degrees(math.acos(0.8))!r},180\n"
@@ -82,6 +98,13 @@ class Embedding(unittest.TestCase):
         text = run(BINARY, "eval", table, "--points", "points.csv", cwd=self.folder).stdout
         row = next(csv.DictReader(io.StringIO(text)))
         return [float(row[f"first_{c}"]) + float(row[f"rest_{c}"]) for c in "rgb"], float(row["pdf"])
+
+    def check_example(self, example, table="table.exr"):
+        self.check_output(run(example, self.folder / table).stdout, table)
+        for bad in ("missing.exr", "recipe.toml"):
+            result = run(example, self.folder / bad, check=False)
+            self.assertEqual(result.returncode, 1)
+            self.assertIn(bad, result.stderr)
 
     def check_output(self, text, table):
         """The program's numbers against those of the command."""
@@ -96,23 +119,82 @@ class Embedding(unittest.TestCase):
 
     def test_example(self):
         example = self.build(EXAMPLE, "build-example", *(f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON" for name in NOT_NEEDED))
-        self.check_output(run(example, self.folder / "table.exr").stdout, "table.exr")
+        self.check_example(example)
         libraries = run("ldd", example).stdout
         self.assertRegex(libraries, r"libOpenEXR")
         for name in ("openvdb", "embree", "tbb", "fmt", "tomlplusplus", "png"):
             self.assertNotRegex(libraries.lower(), rf"lib{name}")
-        for bad in ("missing.exr", "recipe.toml"):
-            result = run(example, self.folder / bad, check=False)
-            self.assertEqual(result.returncode, 1)
-            self.assertIn(bad, result.stderr)
+
+    def test_c_example(self):
+        self.check_example(self.build(EXAMPLE / "c", "build-c"))
+
+    def test_shared_library(self):
+        prefix = self.shared_prefix()
+        for source, build in ((EXAMPLE, "build-shared-cpp"), (EXAMPLE / "c", "build-shared-c")):
+            example = self.build(source, build, prefix=prefix)
+            self.check_example(example)
+            self.assertRegex(run("ldd", example).stdout, r"libsunbeam\.so")
+        self.assertEqual(list(prefix.rglob("*.a")), [])
+
+    def test_a_shared_library_shows_the_interface_alone(self):
+        library = next(self.shared_prefix().rglob("libsunbeam.so"))
+        names = [line.split()[-1] for line in run(NM, "-DC", "--defined-only", library).stdout.splitlines()]
+        ours = [line for line in run(NM, "-DC", "--defined-only", library).stdout.splitlines() if "sunbeam" in line]
+        self.assertGreater(len(ours), 40)
+        self.assertLess(len(ours), 250)
+        for inner in ("BoundTable", "FilmCurves", "TexturedData", "fit_isotropic"):
+            self.assertFalse([line for line in ours if f"v1::{inner}::" in line or f"v1::{inner}(" in line], inner)
+        self.assertIn("sunbeam_eval", names)
+
+    def test_a_plug_in_hides_the_archives(self):
+        source = self.folder / "plug_in.cpp"
+        source.write_text("#include <sunbeam/table_bsdf.h>\n#include <sunbeam/table_io.h>\n"
+                          "extern \"C\" __attribute__((visibility(\"default\"))) double use(const char* path) {\n"
+                          "  const auto t = sunbeam::load_table_exr(path);\n"
+                          "  return t.bind(sunbeam::Parameters::of(t.material)).pdf({0, 0, 1}, {0, 0, 1});\n}\n")
+        project = self.folder / "plug-in"
+        project.mkdir()
+        (project / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\nproject(plug_in LANGUAGES CXX)\nfind_package(sunbeam REQUIRED)\n"
+            "add_library(plug_in SHARED ../plug_in.cpp)\ntarget_link_libraries(plug_in PRIVATE sunbeam::table)\n"
+            "set_target_properties(plug_in PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)\n")
+        self.build(project, "build-plug-in")
+        symbols = run(NM, "-D", "--defined-only", self.folder / "build-plug-in" / "libplug_in.so").stdout
+        self.assertIn(" use", symbols)
+        self.assertEqual([line for line in symbols.splitlines() if "7sunbeam" in line or "sunbeam_" in line], [])
+
+    def test_fetch_content(self):
+        example = self.build(EXAMPLE / "fetch_content", "build-fetched", f"-DSUNBEAM_SOURCE_DIR={SOURCE}")
+        self.check_example(example)
+        self.assertFalse((self.folder / "build-fetched" / "bin" / "sunbeam").exists())
+
+    def test_pkg_config(self):
+        for prefix, name in ((self.prefix, "static"), (self.shared_prefix(), "shared")):
+            folder = next(prefix.rglob("sunbeam.pc")).parent
+            environment = {**os.environ, "PKG_CONFIG_PATH": str(folder)}
+            flags = subprocess.run(["pkg-config", "--cflags", "--libs", "sunbeam"], capture_output=True, text=True,
+                                   check=True, env=environment).stdout.split()
+            example = self.folder / f"example-{name}"
+            run(CXX, "-std=c++20", *CXXFLAGS.split(), EXAMPLE / "main.cpp", "-o", example, *flags,
+                f"-Wl,-rpath,{folder.parent}")
+            self.check_example(example)
+
+    def test_the_build_tree_is_no_package(self):
+        project = self.folder / "no-prefix"
+        project.mkdir()
+        (project / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.25)\nproject(none LANGUAGES CXX)\n"
+                                                "find_package(sunbeam REQUIRED)\n")
+        result = run(CMAKE, "-G", "Ninja", "-S", project, "-B", self.folder / "build-none", check=False)
+        self.assertNotEqual(result.returncode, 0)
+        self.assertIn("could not be found", " ".join(result.stderr.split()).replace("not find a package", "could not be found"))
 
     def test_component_vdb(self):
         project = self.folder / "vdb-project"
         project.mkdir()
         (project / "CMakeLists.txt").write_text(VDB_PROJECT)
         source = (EXAMPLE / "main.cpp").read_text()
-        changed = source.replace("table_io.h", "table_vdb.h").replace("load_table_exr", "load_table_vdb")
-        self.assertEqual(changed.count("vdb"), 2)
+        changed = source.replace("table_io.h", "table_vdb.h").replace("try_load_table_exr", "try_load_table")
+        self.assertEqual(changed.count("vdb"), 1)
         (project / "main.cpp").write_text(changed)
         if HAS_VDB:
             example = self.build(project, "build-vdb")
@@ -142,13 +224,15 @@ class Embedding(unittest.TestCase):
             text = (self.prefix / header).read_text()
             for include in re.findall(r'#\s*include\s*[<"]([^>"]+)[>"]', text):
                 with self.subTest(header=header, include=include):
-                    self.assertTrue(re.fullmatch(r"[a-z_0-9]+", include) or f"include/{include}" in names)
+                    self.assertTrue(re.fullmatch(r"[a-z_0-9]+|stddef\.h", include) or f"include/{include}" in names)
         for path in self.prefix.rglob("*.cmake"):
             self.assertNotIn(str(BUILD_DIR), path.read_text(), f"{path.name} points into the build folder")
 
     def test_everything_bears_the_abi_version(self):
         """Two versions of the library may meet in one program, so no name of theirs is the same."""
-        headers = [path.read_text() for path in (self.prefix / "include").rglob("*.h")]
+        # Two headers are C or macros, without a namespace.
+        headers = [path.read_text() for path in (self.prefix / "include").rglob("*.h")
+                   if path.name not in ("sunbeam.h", "export.h")]
         spaces = [re.findall(r"^inline namespace (v[0-9]+) \{", text, re.MULTILINE) for text in headers]
         self.assertTrue(all(len(names) == 1 for names in spaces), "each header opens it once")
         version = {names[0] for names in spaces}

@@ -8,6 +8,7 @@
 #include <array>
 #include <optional>
 
+#include "sunbeam/core/export.h"
 #include "sunbeam/core/rng.h"
 #include "sunbeam/core/vec.h"
 
@@ -46,7 +47,7 @@ struct EvalAndSample {
   std::optional<BsdfSample> sample;
 };
 
-class Bsdf {
+class SUNBEAM_EXPORT Bsdf {
  public:
   virtual ~Bsdf() = default;
 

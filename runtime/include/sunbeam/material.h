@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sunbeam/core/export.h"
 #include "sunbeam/core/vec.h"
 #include "sunbeam/detail/roughness.h"
 
@@ -30,7 +31,7 @@ enum class AbsorptionPath { product, sum };
 enum class Microfacet { single, multiple };
 
 // One skin. The intervals are those that every reader allows.
-struct Material {
+struct SUNBEAM_EXPORT Material {
   Transmission transmission = Transmission::refract;
   AbsorptionPath absorption_path = AbsorptionPath::sum;
   double film_thickness_nm = 300;   // d0, 0 to 100000
@@ -84,26 +85,26 @@ inline constexpr double kMostScatteringDepth = 100;
 // These give access by key and text, for CSV columns, table metadata and messages. Lists are separated by
 // ';'.
 const std::vector<std::string>& material_keys();
-std::string get_text(const Material& material, std::string_view key);
+SUNBEAM_EXPORT std::string get_text(const Material& material, std::string_view key);
 // Throws Error "key 'K': found V; allowed: ..." (without a file: the caller adds it). What a base_ior may be
 // depends on base_extinction: set the keys in the order of material_keys().
-void set_from_text(Material& material, std::string_view key, const std::string& text);
+SUNBEAM_EXPORT void set_from_text(Material& material, std::string_view key, const std::string& text);
 
-std::string_view to_string(Transmission transmission);
-std::string_view to_string(AbsorptionPath path);
-std::string_view to_string(Microfacet microfacet);
+SUNBEAM_EXPORT std::string_view to_string(Transmission transmission);
+SUNBEAM_EXPORT std::string_view to_string(AbsorptionPath path);
+SUNBEAM_EXPORT std::string_view to_string(Microfacet microfacet);
 // Returns one number, or two separated by ';'.
-std::string to_string(const Roughness& roughness);
+SUNBEAM_EXPORT std::string to_string(const Roughness& roughness);
 // Describes what Roughness::is_allowed() allows, for messages.
-std::string allowed_roughness();
+SUNBEAM_EXPORT std::string allowed_roughness();
 
 // The allowed interval of a numeric key; every reader uses it.
 struct Interval {
   double low, high;
 };
-Interval allowed_interval(std::string_view key);
+SUNBEAM_EXPORT Interval allowed_interval(std::string_view key);
 // Returns that of this material: what a base_ior may be depends on base_extinction.
-Interval allowed_interval(std::string_view key, const Material& material);
+SUNBEAM_EXPORT Interval allowed_interval(std::string_view key, const Material& material);
 
 }  // namespace v1
 }  // namespace sunbeam

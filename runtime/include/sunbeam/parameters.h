@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "sunbeam/core/export.h"
 #include "sunbeam/material.h"
 
 namespace sunbeam {
@@ -13,7 +14,7 @@ inline constexpr std::array<const char*, 3> kParameterNames = {"film_thickness_n
                                                                "absorption_per_nm"};
 
 // One point of the grid or between its nodes: nm, no unit, 1/nm.
-struct Parameters {
+struct SUNBEAM_EXPORT Parameters {
   double film_thickness_nm, base_ior, absorption_per_nm;
 
   static Parameters of(const Material& material) {

@@ -39,6 +39,7 @@
 
 #include "sunbeam/bind_options.h"
 #include "sunbeam/core/color_space.h"
+#include "sunbeam/core/export.h"
 #include "sunbeam/detail/angles.h"
 #include "sunbeam/detail/factors.h"
 #include "sunbeam/detail/nd_array.h"
@@ -53,7 +54,7 @@ inline constexpr int kTableSchemaVersion = 4, kSingleFilmSchemaVersion = 3, kOld
 
 // Says whether files of this version hold the key of a material. Where they do not, a table's material has
 // the default.
-bool is_in_tables(std::string_view key, int schema_version);
+SUNBEAM_EXPORT bool is_in_tables(std::string_view key, int schema_version);
 
 // Says what the array `remainder` of a dense table stands in: see above.
 enum class FrameKind { closed, none };
@@ -62,7 +63,7 @@ constexpr const char* name_of(FrameKind frame) { return frame == FrameKind::clos
 
 class TableBsdf;
 
-struct Table {
+struct SUNBEAM_EXPORT Table {
   Material material;  // fixed values, and defaults for the parameters
   Symmetry symmetry = Symmetry::isotropic;
 
@@ -124,7 +125,7 @@ struct Table {
 };
 
 // Says whether some base IOR of the table lies below the exterior's.
-bool reaches_below(const Table& table);
+SUNBEAM_EXPORT bool reaches_below(const Table& table);
 
 }  // namespace v1
 }  // namespace sunbeam

@@ -60,6 +60,7 @@
 #include <span>
 
 #include "sunbeam/bsdf.h"
+#include "sunbeam/core/export.h"
 #include "sunbeam/detail/power_density.h"
 #include "sunbeam/detail/textured_point.h"
 #include "sunbeam/table.h"
@@ -75,14 +76,14 @@ class TexturedLookup;
 
 // Copies share the data. Const calls, those of At included, allocate nothing and lock nothing, and may run on
 // any number of threads.
-class TexturedTable {
+class SUNBEAM_EXPORT TexturedTable {
  public:
   // Takes what it needs of `table`, which need not outlive it. Throws Error if the film's thickness or its
   // layers would take too much memory or time. `outside` of the options is of no matter.
   explicit TexturedTable(const Table& table, const BindOptions& options = {});
 
   // At is the BSDF at one parameter point; it lives no longer than its table.
-  class At final : public Bsdf {
+  class SUNBEAM_EXPORT At final : public Bsdf {
    public:
     // The contract of bsdf.h without a generator.
     Rgb eval(const Vec3& wo, const Vec3& wi) const { return eval_pdf(wo, wi).f; }

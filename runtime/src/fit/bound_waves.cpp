@@ -163,6 +163,18 @@ double BoundWaves::visits(const Row& i, const Direction& o, std::size_t k) const
   return bracket(field_.depth(k), i.below, o.below, std::span(i.exchange).subspan(k * nodes, nodes), o.taps);
 }
 
+void BoundWaves::rest(const Row& i, const Direction& o, std::span<double> values) const {
+  for (std::size_t k = 0; k < field_.size(); ++k)
+    values[k] = gain_[k] * i.share[k] * o.share[k] * visits(i, o, k);
+}
+
+void BoundWaves::reflectance(double cosine, std::span<double> values) const {
+  if (layered_) return layered_->reflectance(cosine, values);
+  std::array<float, kMostWavelengths> passing;
+  film_.powers(material().film_thickness_nm, material().base_ior, static_cast<float>(cosine), passing.data());
+  for (std::size_t k = 0; k < field_.size(); ++k) values[k] = 1 - double{passing[k]};
+}
+
 Rgb BoundWaves::rest(const Row& i, const Direction& o) const {
   Rgb sum;
   for (std::size_t k = 0; k < field_.size(); ++k)

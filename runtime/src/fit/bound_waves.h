@@ -40,6 +40,11 @@ class BoundWaves {
   // Returns the rest, folded, 1/sr.
   Rgb rest(const Row& i, const Direction& o) const;
 
+  // Writes the rest at each wavelength, 1/sr.
+  void rest(const Row& i, const Direction& o, std::span<double> values) const;
+  // Writes what the film reflects at a cosine outside, at each wavelength.
+  void reflectance(double cosine, std::span<double> values) const;
+
   // Returns what the film reflects at cosines outside, folded.
   std::vector<FloatRgb> reflectance(std::span<const float> cosines) const;
 

@@ -116,9 +116,15 @@ void LayeredWaves::take_returns() {
 }
 
 Rgb LayeredWaves::reflectance(double cosine) const {
+  std::array<double, kMostWavelengths> values;
+  reflectance(cosine, values);
+  return waves_.fold(std::span(values).first(size()));
+}
+
+void LayeredWaves::reflectance(double cosine, std::span<double> values) const {
   FilmPowers powers;
   curves_.at(Side::outside, cosine, every_wavelength_, powers);
-  return waves_.fold(std::span(powers.reflectance).first(size()));
+  std::copy_n(powers.reflectance.begin(), size(), values.begin());
 }
 
 void LayeredWaves::let_pass(double cosine, double* transmittance) const {

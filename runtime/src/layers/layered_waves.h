@@ -23,6 +23,8 @@ class LayeredWaves {
 
   // Returns what the film reflects from outside, folded.
   Rgb reflectance(double cosine) const;
+  // Writes it at each wavelength.
+  void reflectance(double cosine, std::span<double> values) const;
 
   // Holds how light of one direction meets facets: what the film lets through at nodes of a quadrature over
   // facets.

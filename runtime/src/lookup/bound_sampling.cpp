@@ -40,7 +40,10 @@ std::vector<double> rest_density(const BoundValues& values, const std::vector<Ve
 // The film's reflectance, mean over channels, at the cosines of BoundValues::film.
 std::vector<float> mean_film(const BoundValues& values) {
   std::vector<float> means;
-  for (const Color4& r : values.film) means.push_back(std::max((r[0] + r[1] + r[2]) / 3, 0.0f));
+  for (std::size_t k = 0; k <= values.film.size(); ++k) {
+    const Color4 r = values.film.get(k);
+    means.push_back(std::max((r[0] + r[1] + r[2]) / 3, 0.0f));
+  }
   return means;
 }
 

@@ -74,7 +74,7 @@ SUNBEAM_ALWAYS_INLINE BoundTable::Parts BoundTable::parts(const Viewer& viewer, 
   parts.rest = separable_ ? separable_rest(viewer.scale, values_.separable.scale({at, 0}), ratio)
                           : to_color4(values_.other_rest(wo, wi));
   if (smooth_) return parts;
-  parts.first = pair.lobe * lerp(values_.film.data(), {at, 2});
+  parts.first = pair.lobe * values_.film.at({at, 2});
   parts.pdf += chance * pair.pdf * (has_cells() ? cell_density(viewer, pair) : 1);
   return parts;
 }
@@ -108,6 +108,8 @@ SUNBEAM_ALWAYS_INLINE Vec3 BoundTable::draw(const Viewer& viewer, const Vec3& wo
       CosineRows::root(drawn, density[0][3], density[(ratio_roots() - 1) / CosineRows::kIntervals][3])};
   return at_azimuth(root * root, FloatTurn(u[2]));
 }
+
+double BoundTable::first_chance(const Vec3& wo) const { return double{Viewer(*this, wo).first_chance()}; }
 
 BsdfSample BoundTable::mirrored(const Viewer& viewer, const Vec3& wo) const {
   return {{-wo.x, -wo.y, wo.z}, dirac(wo.z) / double{viewer.first_chance()}, true, 0};
@@ -144,7 +146,7 @@ SUNBEAM_ALWAYS_INLINE void BoundTable::eval_four(const Viewer& viewer, const Col
   SUNBEAM_UNROLL_4
   for (int k = 0; k < 4; ++k) {
     Color4 value = values_.separable.scale({scales, k}) * lerp(ratios, {roots, k});
-    if (!smooth_) value += lights.lobe[k] * lerp(values_.film.data(), {film, k});
+    if (!smooth_) value += lights.lobe[k] * values_.film.at({film, k});
     f[k] = lights.cosine[k] > 0 ? to_rgb(max4(value, least_)) : Rgb();
   }
 }

@@ -43,9 +43,14 @@ class BoundTable {
   Rgb rest(const Vec3& wo, const Vec3& wi) const;
   Rgb rest_stderr(const Vec3& wo, const Vec3& wi) const;
   Rgb film_reflectance(double cosine) const { return values_.film_reflectance(cosine); }
+  // Returns the chance that sample() tries the first surface.
+  double first_chance(const Vec3& wo) const;
   Rgb dirac(double cosine) const { return to_rgb(max4(to_color4(film_reflectance(cosine)), least_)); }
   Rgb albedo(const Vec3& wo) const;
 
+  std::size_t bytes() const {
+    return sizeof(BoundTable) + values_.bytes() + cosine_rows_.bytes() + facet_cells_.bytes();
+  }
   const Material& material() const { return values_.material; }
   bool is_smooth() const { return smooth_; }
 

@@ -13,21 +13,22 @@ constexpr int kRestAzimuths = 8;  // of an anisotropic factored table, in a quad
 
 double even_cosine(int node) { return static_cast<double>(node) / (BoundValues::kFilmCosines - 1); }
 
-std::vector<Color4> folded_film(const BoundWaves& waves) {
+ColorNodes folded_film(const BoundWaves& waves) {
   std::vector<float> cosines;
   for (int k = 0; k < BoundValues::kFilmCosines; ++k) cosines.push_back(static_cast<float>(even_cosine(k)));
   const std::vector<FloatRgb> folded = waves.reflectance(cosines);
-  std::vector<Color4> nodes(folded.size() + 1);
-  for (std::size_t k = 0; k < folded.size(); ++k) nodes[k] = Color4{folded[k].r, folded[k].g, folded[k].b, 0};
+  ColorNodes nodes(folded.size());
+  for (std::size_t k = 0; k < folded.size(); ++k)
+    nodes.set(k, Color4{folded[k].r, folded[k].g, folded[k].b, 0});
   return nodes;
 }
 
-std::vector<Color4> interpolated_film(const NdArray& reflectance, const Material& material,
-                                      const ColorMatrix& to) {
-  std::vector<Color4> nodes(BoundValues::kFilmCosines + 1);
-  for (int k = 0; k < BoundValues::kFilmCosines; ++k)
-    nodes[k] = to_color4(to * reflectance.interpolate(
-                                  std::array{material.film_thickness_nm, material.base_ior, even_cosine(k)}));
+ColorNodes interpolated_film(const NdArray& reflectance, const Material& material, const ColorMatrix& to) {
+  ColorNodes nodes(BoundValues::kFilmCosines);
+  for (int k = 0; k < BoundValues::kFilmCosines; ++k) {
+    const std::array at{material.film_thickness_nm, material.base_ior, even_cosine(k)};
+    nodes.set(static_cast<std::size_t>(k), to_color4(to * reflectance.interpolate(at)));
+  }
   return nodes;
 }
 
@@ -57,9 +58,16 @@ Rgb BoundValues::other_rest(const Vec3& wo, const Vec3& wi) const {
   return to * std::get<DenseRest>(other).rest(Parameters(), wo, wi);
 }
 
+std::size_t BoundValues::bytes() const {
+  std::size_t nodes = separable.scales.size() + separable.ratios.size(), others = film.bytes();
+  if (const auto* factored = std::get_if<AnisotropicSeparable>(&other))
+    nodes += factored->scales.size() + factored->ratios.size();
+  if (const auto* dense = std::get_if<DenseRest>(&other)) others += dense->bytes();
+  return nodes * sizeof(Color4) + others;
+}
+
 Rgb BoundValues::film_reflectance(double cosine) const {
-  return to_rgb(
-      lerp(film.data(), EvenPosition(static_cast<float>(std::clamp(cosine, 0.0, 1.0)), kFilmCosines)));
+  return to_rgb(film.at(EvenPosition(static_cast<float>(std::clamp(cosine, 0.0, 1.0)), kFilmCosines)));
 }
 
 void BoundValues::visit_azimuth_mean(const Vec3& wo,

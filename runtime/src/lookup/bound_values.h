@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "runtime/src/rest/color_nodes.h"
 #include "runtime/src/rest/dense_rest.h"
 #include "runtime/src/rest/separable.h"
 #include "sunbeam/table.h"
@@ -35,11 +36,13 @@ struct BoundValues {
   // Returns Int f_rest cos dwi.
   Rgb rest_albedo(const Vec3& wo) const;
 
+  std::size_t bytes() const;
+
   Material material;
   Symmetry symmetry;
-  ColorMatrix to;            // from the colours of the table to those of all values here
-  double noise = 0;          // relative standard error of a factored rest
-  std::vector<Color4> film;  // reflectance at even cosines, and one node more
+  ColorMatrix to;                 // from the colours of the table to those of all values here
+  double noise = 0;               // relative standard error of a factored rest
+  ColorNodes film{kFilmCosines};  // reflectance at even cosines
   Separable separable;
   std::variant<std::monostate, DenseRest, AnisotropicSeparable> other;
 };

@@ -31,12 +31,22 @@ TableBsdf Table::bind(const Parameters& parameters, const BindOptions& options) 
   return TableBsdf(*this, parameters, options);
 }
 
+Result<TableBsdf> try_bind(const Table& table, const Parameters& parameters, const BindOptions& options) {
+  return attempt([&] { return TableBsdf(table, parameters, options); });
+}
+
+std::size_t TableBsdf::bytes() const { return bound_->bytes(); }
+
 const Material& TableBsdf::material() const { return bound_->material(); }
 
 Rgb TableBsdf::film_reflectance(double cosine) const { return bound_->film_reflectance(cosine); }
 
 Rgb TableBsdf::dirac(const Vec3& wo) const {
   return bound_->is_smooth() && wo.z > 0 ? bound_->dirac(wo.z) : Rgb();
+}
+
+double TableBsdf::dirac_chance(const Vec3& wo) const {
+  return bound_->is_smooth() && wo.z > 0 ? bound_->first_chance(wo) : 0;
 }
 
 void TableBsdf::eval(const Vec3& wo, std::span<const Vec3> wi, std::span<Rgb> f) const {

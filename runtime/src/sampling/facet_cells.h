@@ -92,7 +92,7 @@ class FacetCells {
   }
 
  private:
-  static constexpr std::size_t kStride = kRows + 1;
+  static constexpr std::size_t kStride = kRows;
   static constexpr double kWholeShare = 65535;
 
   // The half turn's cosine is x / sqrt(length2); one of its quarters is the other's mirror image.

@@ -244,6 +244,10 @@ Table parse_table_exr(std::string_view bytes, const std::string& name) {
   return from_parts(std::move(parts), name);
 }
 
+Result<Table> try_load_table_exr(const std::string& path) {
+  return attempt([&] { return load_table_exr(path); });
+}
+
 Table load_table_exr(const std::string& path) { return parse_table_exr(read_file(path), path); }
 
 void save_table_exr(const TableView& table, const std::string& path) {

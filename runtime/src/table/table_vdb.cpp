@@ -229,6 +229,10 @@ void require_table_extension(const std::string& path) {
     throw Error(path + ": extension is '" + ext + "'; allowed for a table: .exr, .vdb");
 }
 
+Result<Table> try_load_table(const std::string& path) {
+  return attempt([&] { return load_table(path); });
+}
+
 Table load_table(const std::string& path) {
   const std::string bytes = read_file(path);
   require_table_extension(path);

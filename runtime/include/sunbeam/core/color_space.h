@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "sunbeam/core/export.h"
 #include "sunbeam/core/vec.h"
 
 namespace sunbeam {
@@ -22,13 +23,13 @@ inline namespace v1 {
 enum class ColorSpace { rec709, acescg, rec2020, xyz };
 
 // Returns the name: "rec709", "acescg", "rec2020", "xyz".
-std::string_view to_string(ColorSpace space);
+SUNBEAM_EXPORT std::string_view to_string(ColorSpace space);
 // Returns the space of that name; throws Error "found 'S'; allowed: rec709, acescg, rec2020, xyz" (the caller
 // adds where).
-ColorSpace color_space_from(std::string_view name);
+SUNBEAM_EXPORT ColorSpace color_space_from(std::string_view name);
 
 // A linear map between tristimulus values or linear colours, by rows.
-struct ColorMatrix {
+struct SUNBEAM_EXPORT ColorMatrix {
   Vec3 row[3];
 
   Vec3 operator*(const Vec3& v) const { return {dot(row[0], v), dot(row[1], v), dot(row[2], v)}; }
@@ -38,28 +39,28 @@ struct ColorMatrix {
   }
   ColorMatrix operator*(const ColorMatrix& other) const;
 };
-ColorMatrix inverse(const ColorMatrix& matrix);
+SUNBEAM_EXPORT ColorMatrix inverse(const ColorMatrix& matrix);
 
 // Returns the tristimulus values of the space's own white, with Y = 1.
-Vec3 white(ColorSpace space);
+SUNBEAM_EXPORT Vec3 white(ColorSpace space);
 
 // Maps linear RGB to XYZ relative to the space's own white: RGB (1, 1, 1) becomes `white(space)`.
-ColorMatrix rgb_to_xyz(ColorSpace space);
+SUNBEAM_EXPORT ColorMatrix rgb_to_xyz(ColorSpace space);
 
 // Adapts XYZ seen under the white `from` to XYZ seen under `to`, after Bradford (CIE 160:2004; Lam 1985).
-ColorMatrix bradford(const Vec3& from, const Vec3& to);
+SUNBEAM_EXPORT ColorMatrix bradford(const Vec3& from, const Vec3& to);
 
 // Maps XYZ to linear RGB. XYZ is measured under an illuminant that gives a perfect white diffuser
 // `illuminant_white`; it is adapted to the white of the space, so that the diffuser is (1, 1, 1) whatever the
 // illuminant.
-ColorMatrix xyz_to_rgb(const Vec3& illuminant_white, ColorSpace space);
+SUNBEAM_EXPORT ColorMatrix xyz_to_rgb(const Vec3& illuminant_white, ColorSpace space);
 
 // Maps linear RGB of one space to another, adapted from white to white: (1, 1, 1) stays (1, 1, 1), unless one
 // of them is xyz.
-ColorMatrix rgb_to_rgb(ColorSpace from, ColorSpace to);
+SUNBEAM_EXPORT ColorMatrix rgb_to_rgb(ColorSpace from, ColorSpace to);
 
 // Returns Y of a linear colour; that of (1, 1, 1) is 1.
-double luminance(const Rgb& color, ColorSpace space);
+SUNBEAM_EXPORT double luminance(const Rgb& color, ColorSpace space);
 
 // A colour with its negative components raised to zero. Raising adds light: `added` holds the amounts (all
 // >= 0) and `luminance_added` their luminance.
@@ -68,10 +69,10 @@ struct GamutClip {
   Rgb added;
   double luminance_added = 0;
 };
-GamutClip clip_negative(const Rgb& color, ColorSpace space);
+SUNBEAM_EXPORT GamutClip clip_negative(const Rgb& color, ColorSpace space);
 
 // This clips many colours and keeps the account, for a report.
-struct ClipAccount {
+struct SUNBEAM_EXPORT ClipAccount {
   std::int64_t colors = 0;     // how many were seen
   std::int64_t clipped = 0;    // how many had a negative component
   double lowest = 0;           // the most negative component

@@ -4,10 +4,12 @@
 
 #include <stdexcept>
 
+#include "sunbeam/core/export.h"
+
 namespace sunbeam {
 inline namespace v1 {
 
-class Error : public std::runtime_error {
+class SUNBEAM_EXPORT Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };

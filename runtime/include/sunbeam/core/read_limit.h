@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "sunbeam/core/export.h"
+
 namespace sunbeam {
 inline namespace v1 {
 
@@ -14,11 +16,12 @@ std::uint64_t read_limit(std::uint64_t file_bytes);
 
 // Raises the limit of this process for files whose headers are trusted. It may be called at any time, from
 // any thread.
-void set_read_limit(std::uint64_t bytes);
+SUNBEAM_EXPORT void set_read_limit(std::uint64_t bytes);
 
 // Throws Error if `bytes` of memory are more than read_limit(file_bytes). The message starts with `what`,
 // which names what asks for it: "image 'a.exr' of 20000 x 40000 pixels".
-void require_within_read_limit(const std::string& what, std::uint64_t bytes, std::uint64_t file_bytes);
+SUNBEAM_EXPORT void require_within_read_limit(const std::string& what, std::uint64_t bytes,
+                                              std::uint64_t file_bytes);
 
 }  // namespace v1
 }  // namespace sunbeam

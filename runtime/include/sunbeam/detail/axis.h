@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sunbeam/core/export.h"
 #include "sunbeam/detail/bracket.h"
 
 namespace sunbeam {
@@ -27,7 +28,7 @@ struct Stencil {
 // A root without softness has a kink at its origin. One that lies within the axis is a node, and no
 // polynomial reaches across it. A periodic axis (period > 0) has its nodes in [first, first + period) and
 // wraps round; it is linear.
-struct Axis {
+struct SUNBEAM_EXPORT Axis {
   std::string name;
   std::string unit;
   std::vector<double> nodes;  // strictly increasing, at least one

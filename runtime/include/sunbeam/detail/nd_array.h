@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "sunbeam/core/export.h"
 #include "sunbeam/core/vec.h"
 #include "sunbeam/detail/axis.h"
 
@@ -20,7 +21,7 @@ enum class Precision { half_float, single_float };
 float round_to(Precision precision, double value);
 
 // Describes an array without its values: its name, axes and precision, and where a cell lies.
-class ArrayShape {
+class SUNBEAM_EXPORT ArrayShape {
  public:
   static constexpr std::size_t kMaxRank = 9;
 
@@ -51,7 +52,7 @@ class ArrayShape {
   std::size_t cells_ = 0;
 };
 
-class NdArray : public ArrayShape {
+class SUNBEAM_EXPORT NdArray : public ArrayShape {
  public:
   NdArray() = default;
   // All values are zero.

@@ -11,13 +11,14 @@
 #include <string>
 #include <vector>
 
+#include "sunbeam/core/export.h"
 #include "sunbeam/table.h"
 
 namespace sunbeam {
 inline namespace v1 {
 
 // Gives access to one array of a table.
-class ArrayView {
+class SUNBEAM_EXPORT ArrayView {
  public:
   // Returns the values of parameter nodes [first, first + count), in the order and the rounding of
   // NdArray::values(). Many threads may call it, more than once for the same nodes.
@@ -38,7 +39,7 @@ class ArrayView {
   NodeValues values_;  // empty if all are in memory
 };
 
-class TableView {
+class SUNBEAM_EXPORT TableView {
  public:
   TableView(const Table& table);  // refers to the table
   TableView(Table&& table);

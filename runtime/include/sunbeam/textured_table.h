@@ -122,7 +122,7 @@ class SUNBEAM_EXPORT TexturedTable {
     friend class TexturedTable;
     template <TexturedKind kKind>
     friend class TexturedLookup;
-    At(const TexturedData& data, double thickness_nm, double base_ior, double absorption_per_nm);
+    At(const TexturedData& data, const Parameters& parameters);
     template <class Call>
     auto with_lookup(const Vec3& wo, Call call) const;
     template <class Lookup, class Viewer>

@@ -49,8 +49,6 @@ struct TexturedData {
       : material(table.material),
         to(rgb_to_rgb(table.color_space(), options.color_space.value_or(table.color_space()))),
         least(options.clip_negative ? 0 : std::numeric_limits<double>::lowest()),
-        keeps_colors(options.color_space.value_or(table.color_space()) == table.color_space() &&
-                     !options.clip_negative),
         film(table.material, table.is_factored() && !is_layered(table) &&
                                  FactorFrame(table.material, reaches_below(table)).is_warped()),
         facets(table.material.roughness),
@@ -88,7 +86,6 @@ struct TexturedData {
 
   // Returns a colour of the table as the caller wants it.
   Rgb colors(const Rgb& color) const {
-    if (keeps_colors) return color;
     return transform(to * color, [this](double c) { return std::max(c, least); });
   }
 
@@ -131,7 +128,6 @@ struct TexturedData {
   Material material;
   ColorMatrix to;                      // from the colours of the table to the caller's
   double least;                        // of each component
-  bool keeps_colors;                   // where neither changes them
   std::optional<TexturedRest> rest;    // of a factored table,
   std::optional<LayeredRest> layered;  // of one with a layered film
   std::optional<DenseRest> dense;      // or of a dense one

@@ -11,7 +11,7 @@ namespace {
 
 // A small file can say that its films are a tenth of a millimetre thick, which takes nodes by the million.
 void require_reasonable_size(const TexturedGrid& grid, bool has_pairs) {
-  const std::uint64_t cells = grid.cells() + (has_pairs ? grid.pair_cells() : 0);  // before they are packed
+  const std::uint64_t cells = grid.cells() + (has_pairs ? grid.pair_cells() : 0);
   const std::uint64_t bytes = cells * sizeof(Color4), most = 4 * read_limit(0);
   if (bytes > most)
     throw Error("textured look-ups of films up to " + to_text(grid.axes[0].high()) + " nm take " +
@@ -22,14 +22,11 @@ void require_reasonable_size(const TexturedGrid& grid, bool has_pairs) {
 }  // namespace
 
 TexturedRest::TexturedRest(const Table& table, Arithmetic arithmetic)
-    : grid_(table),
-      media_(table, arithmetic),
-      per_path_(grid_.path_stride()),
-      per_ior_(grid_.row(1, 0)),
-      per_absorption_(grid_.row(0, 1)) {
+    : grid_(table), media_(table, arithmetic), stride_(static_cast<int>(grid_.path_stride())) {
+  for (int k = 0; k < 4; ++k) corner_[k] = static_cast<int>(grid_.row(k >> 1, k & 1));
   require_reasonable_size(grid_, !table.factors.exchange.empty());
-  TexturedFit fit = fit_textured(table, grid_, TexturedMedia(table, Arithmetic::reproducible));
-  nodes_ = PackedNodes(fit.nodes);
+  TexturedFit fit = fit_textured(table, grid_, media_);
+  nodes_ = std::move(fit.nodes);
   pairs_ = std::move(fit.pairs);
 }
 
@@ -60,8 +57,12 @@ Color4 TexturedRest::exchange(const Parameters& at, const PairEnd& o, const Pair
 ParameterTaps TexturedRest::parameter_taps(const Parameters& at) const {
   const EvenPosition n = grid_.axes[1].locate(at.base_ior), s = grid_.axes[2].locate(at.absorption_per_nm);
   const auto nearest = [](const EvenPosition& x) { return x.lower + (x.upper_weight < 0.5f ? 0 : 1); };
-  return {static_cast<float>(at.film_thickness_nm), grid_.row(n.lower, s.lower),
-          grid_.row(nearest(n), nearest(s)), n.upper_weight, s.upper_weight};
+  const float n_upper = n.upper_weight, s_upper = s.upper_weight;
+  return {
+      static_cast<float>(at.film_thickness_nm),
+      grid_.row(n.lower, s.lower),
+      grid_.row(nearest(n), nearest(s)),
+      {(1 - n_upper) * (1 - s_upper), (1 - n_upper) * s_upper, n_upper * (1 - s_upper), n_upper * s_upper}};
 }
 
 }  // namespace v1

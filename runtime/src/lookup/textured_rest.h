@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "runtime/src/base/exp4.h"
-#include "runtime/src/rest/packed_nodes.h"
 #include "runtime/src/rest/pair_taps.h"
 #include "runtime/src/rest/textured_grid.h"
 #include "runtime/src/rest/textured_media.h"
@@ -37,14 +36,18 @@ class TexturedRest {
 
   // Returns L; the last lane is the chance of sampling the first surface, interpolated too.
   Color4 at(const ParameterTaps& taps, const Direction& w) const {
-    const PackedWeights weights(taps.absorption, w.cosine.upper_weight);
-    const std::size_t first = first_node(taps, w);
-    const auto blend = [&](std::size_t node) { return nodes_.blend(weights, node, node + per_absorption_); };
-    const Color4 low[] = {blend(first), blend(first + per_ior_)},
-                 high[] = {blend(first + per_path_), blend(first + per_path_ + per_ior_)};
-    const Color4 lower = low[0] + taps.base_ior * (low[1] - low[0]),
-                 upper = high[0] + taps.base_ior * (high[1] - high[0]);
-    return nodes_.value(lower + w.path.upper_weight * (upper - lower));
+    const Color4* first = nodes_.data() + taps.row + w.path.lower * stride_ + w.cosine.lower;
+    const Color4* second = first + stride_;
+    Color4 low[2]{}, high[2]{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Color4 weight = taps.weight[k] + Color4{};
+      low[0] += weight * first[corner_[k]];
+      high[0] += weight * first[corner_[k] + 1];
+      low[1] += weight * second[corner_[k]];
+      high[1] += weight * second[corner_[k] + 1];
+    }
+    for (int k = 0; k < 2; ++k) low[k] += w.cosine.upper_weight * (high[k] - low[k]);
+    return low[0] + w.path.upper_weight * (low[1] - low[0]);
   }
 
   // Returns the same of an anisotropic film; `phi` is the azimuth folded into a quadrant, over pi/2.
@@ -67,36 +70,30 @@ class TexturedRest {
   // Returns the chance of sampling the first surface, from the nearest parameters: they are given, and so the
   // choice need not change smoothly with them.
   float first_chance(const ParameterTaps& taps, const Direction& w) const {
-    const auto path = static_cast<std::size_t>(w.path.lower + (w.path.upper_weight < 0.5f ? 0 : 1));
-    return nodes_.last_lane(taps.nearest + path * per_path_ + static_cast<std::size_t>(w.cosine.lower),
-                            w.cosine.upper_weight);
+    const int path = w.path.lower + (w.path.upper_weight < 0.5f ? 0 : 1);
+    const Color4* row = nodes_.data() + taps.nearest + path * stride_ + w.cosine.lower;
+    return row[0][3] + w.cosine.upper_weight * (row[1][3] - row[0][3]);
   }
 
   // Asks for what at() will read, to work meanwhile.
   void prefetch(const ParameterTaps& taps, const Direction& w) const {
-    const std::size_t first = first_node(taps, w);
-    for (const std::size_t path : {first, first + per_path_})
-      for (const std::size_t row : {path, path + per_ior_}) {
-        sunbeam::prefetch(nodes_.address(row));
-        sunbeam::prefetch(nodes_.address(row + per_absorption_));
-      }
+    const Color4* first = nodes_.data() + taps.row + w.path.lower * stride_ + w.cosine.lower;
+    for (const int corner : corner_) {
+      sunbeam::prefetch(first + corner);
+      sunbeam::prefetch(first + corner + stride_);
+    }
   }
 
   const TexturedMedia& media() const { return media_; }
   const EvenAxis& axis(std::size_t k) const { return grid_.axes[k]; }
-  std::size_t bytes() const { return nodes_.bytes() + pairs_.size() * sizeof(Color4); }
+  std::size_t bytes() const { return (nodes_.size() + pairs_.size()) * sizeof(Color4); }
 
  private:
-  // Returns the lowest of a direction's neighbours.
-  std::size_t first_node(const ParameterTaps& taps, const Direction& w) const {
-    return taps.row + static_cast<std::size_t>(w.path.lower) * per_path_ +
-           static_cast<std::size_t>(w.cosine.lower);
-  }
-
   TexturedGrid grid_;
   TexturedMedia media_;
-  std::size_t per_path_, per_ior_, per_absorption_;  // from node to node of L
-  PackedNodes nodes_;                                // L: (path, base_ior, absorption_per_nm, phi, cosine)
+  int stride_;                 // from path to path, in nodes
+  std::array<int, 4> corner_;  // distance of a place's rows from the first
+  std::vector<Color4> nodes_;  // (path, base_ior, absorption_per_nm, phi, cosine)
   // Only path "product" has them: (film_thickness_nm, base_ior, absorption_per_nm, direction, direction),
   // with directions as (phi, cosine).
   std::vector<Color4> pairs_;

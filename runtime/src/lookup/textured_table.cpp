@@ -25,8 +25,9 @@ std::size_t TexturedTable::bytes() const { return data_->bytes(); }
 
 TexturedTable::At TexturedTable::at(const Parameters& p) const noexcept {
   const TexturedData& data = *data_;
-  return {data, data.axis(0).clamped(p.film_thickness_nm), data.axis(1).clamped(p.base_ior),
-          data.axis(2).clamped(p.absorption_per_nm)};
+  return {data,
+          {data.axis(0).clamped(p.film_thickness_nm), data.axis(1).clamped(p.base_ior),
+           data.axis(2).clamped(p.absorption_per_nm)}};
 }
 
 TexturedTable::At TexturedTable::at(const Parameters& parameters, OutsideGrid outside) const {
@@ -40,13 +41,11 @@ TexturedTable::At TexturedTable::at(const Parameters& parameters, OutsideGrid ou
   return at(parameters);
 }
 
-// Parameters are stored and read one by one: what is copied at once must wait until it is stored.
-TexturedTable::At::At(const TexturedData& data, double thickness_nm, double base_ior,
-                      double absorption_per_nm)
+TexturedTable::At::At(const TexturedData& data, const Parameters& parameters)
     : data_(&data),
-      parameters_{thickness_nm, base_ior, absorption_per_nm},
-      taps_(data.has_logs() ? data.rest->parameter_taps(parameters_) : ParameterTaps{}),
-      pigment_(data.film, base_ior, absorption_per_nm * data.film.pigment_thickness_nm),
+      parameters_(parameters),
+      taps_(data.has_logs() ? data.rest->parameter_taps(parameters) : ParameterTaps{}),
+      pigment_(data.film, parameters.base_ior, parameters.absorption_per_nm * data.film.pigment_thickness_nm),
       rest_density_(rest_exponent(pigment_, data.mean_absorption())) {}
 
 // What `call` makes of the look-up that the table needs, and of the viewer.
@@ -73,8 +72,8 @@ double TexturedTable::At::albedo(const Vec3& wo) const {
 }
 
 template <class Lookup, class Viewer>
-SUNBEAM_ALWAYS_INLINE EvalPdf TexturedTable::At::eval_pdf_for(const Lookup& lookup, const Viewer& viewer,
-                                                              const Vec3& wo, const Vec3& wi) const {
+inline EvalPdf TexturedTable::At::eval_pdf_for(const Lookup& lookup, const Viewer& viewer, const Vec3& wo,
+                                               const Vec3& wi) const {
   const EvalPdf at = lookup.eval_pdf(viewer, wo, wi);
   return {data_->colors(at.f), at.pdf};
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -71,9 +72,9 @@ struct PigmentCosines {
 // Says where the base IOR and the absorption lie among the nodes of L, and holds the thickness.
 struct ParameterTaps {
   float thickness_nm;
-  std::size_t row;             // the lowest of four neighbours, at the first path and cosine
-  std::size_t nearest;         // of them
-  float base_ior, absorption;  // weights of the upper neighbours
+  std::size_t row;              // the lowest of four neighbours, at the first path and cosine
+  std::size_t nearest;          // of them
+  std::array<float, 4> weight;  // of the neighbours: base IOR is the higher bit, absorption the lower
 };
 
 }  // namespace v1

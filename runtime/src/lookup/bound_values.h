@@ -18,7 +18,7 @@ struct BoundValues {
   // `material` is that of the table with the parameters of the point, which lie in the grid.
   BoundValues(const Table& table, const Material& material, const BindOptions& options);
 
-  static constexpr int kFilmCosines = 1025;
+  static constexpr int kFilmCosines = 881;
 
   // An isotropic factored table's rest is in `separable`, and the variant is empty.
   bool is_separable() const { return std::holds_alternative<std::monostate>(other); }

@@ -48,6 +48,8 @@ struct TexturedData {
   TexturedData(const Table& table, const BindOptions& options)
       : material(table.material),
         to(rgb_to_rgb(table.color_space(), options.color_space.value_or(table.color_space()))),
+        keeps_colors(options.color_space.value_or(table.color_space()) == table.color_space() &&
+                     !options.clip_negative),
         least(options.clip_negative ? 0 : std::numeric_limits<double>::lowest()),
         film(table.material, table.is_factored() && !is_layered(table) &&
                                  FactorFrame(table.material, reaches_below(table)).is_warped()),
@@ -86,6 +88,7 @@ struct TexturedData {
 
   // Returns a colour of the table as the caller wants it.
   Rgb colors(const Rgb& color) const {
+    if (keeps_colors) return color;
     return transform(to * color, [this](double c) { return std::max(c, least); });
   }
 
@@ -127,6 +130,7 @@ struct TexturedData {
   TexturedKind kind;
   Material material;
   ColorMatrix to;                      // from the colours of the table to the caller's
+  bool keeps_colors;                   // where neither changes them
   double least;                        // of each component
   std::optional<TexturedRest> rest;    // of a factored table,
   std::optional<LayeredRest> layered;  // of one with a layered film

@@ -12,8 +12,8 @@ int main(int argc, char** argv) {
   if (argc != 2) return puts("usage: example TABLE.exr"), 2;
   options.color_space = SUNBEAM_REC709;
   sunbeam_table* table = sunbeam_load(argv[1]);
-  sunbeam_default_parameters(table, &parameters);
-  sunbeam_bsdf* skin = table ? sunbeam_bind(table, &parameters, &options) : NULL;
+  sunbeam_bsdf* skin = NULL;
+  if (table && sunbeam_default_parameters(table, &parameters) == 0) skin = sunbeam_bind(table, &parameters, &options);
   if (!skin) return fprintf(stderr, "example: %s\n", sunbeam_error()), 1;
   sunbeam_free_table(table);
   if (sunbeam_eval(skin, 1, viewer, light, f, &pdf) || sunbeam_sample(skin, 1, viewer, u, &sample)) return 1;

@@ -52,6 +52,58 @@ target_link_libraries(example PRIVATE sunbeam::table_vdb)
 """
 
 
+# A plane under one lamp, seen from so far that all pixels see one pair of directions.
+PLANE = """\
+table = "skin.exr"
+[camera]
+position = [0.0, 60.0, 80.0]
+look_at = [0.0, 0.0, 0.0]
+up = [0.0, 1.0, 0.0]
+fov_deg = 0.1
+[render]
+width = 8
+height = 8
+spp = 4
+max_bounces = 1
+[[light]]
+type = "directional"
+towards = [0.0, 0.8, -0.6]
+irradiance = 1.0
+[[material]]
+name = "skin"
+type = "skin"
+film_thickness_nm = 350.0
+base_ior = 1.0
+absorption_per_nm = 0.7
+[[object]]
+type = "plane"
+normal = [0.0, 1.0, 0.0]
+half_size = 10.0
+material = "skin"
+"""
+
+SNIPPET = """\
+#include <ImfArray.h>
+#include <ImfRgbaFile.h>
+
+#include <cstdio>
+
+%s
+int main() {
+  const sunbeam::Vec3 wo = {0.8, 0, 0.6}, wi = {-0.6, 0, 0.8};
+  const double u0 = 0.3, u1 = 0.6, u2 = 0.1;
+  sunbeam::Rgb throughput(1);
+%s
+  std::printf("%%.9g %%.9g %%.9g\\n", f.r * wi.z, f.g * wi.z, f.b * wi.z);
+  Imf::RgbaInputFile file("plane.exr");
+  Imf::Array2D<Imf::Rgba> pixels(8, 8);
+  file.setFrameBuffer(&pixels[0][0], 1, 8);
+  file.readPixels(0, 7);
+  std::printf("%%.9g %%.9g %%.9g\\n", double(pixels[4][4].r), double(pixels[4][4].g), double(pixels[4][4].b));
+}
+"""
+
+
 def run(*command, check=True, cwd=None):
     result = subprocess.run([str(part) for part in command], capture_output=True, text=True, timeout=500, cwd=cwd)
     if check and result.returncode != 0:
@@ -124,6 +176,25 @@ class Embedding(unittest.TestCase):
         self.assertRegex(libraries, r"libOpenEXR")
         for name in ("openvdb", "embree", "tbb", "fmt", "tomlplusplus", "png"):
             self.assertNotRegex(libraries.lower(), rf"lib{name}")
+
+    def test_the_readme_has_the_colours_of_a_picture(self):
+        """The snippet in Rec.709 against what `sunbeam render` makes of the same table; pixels are halves here."""
+        shutil.copy(SOURCE / "tables" / "golden" / "preview.exr", self.folder / "skin.exr")
+        (self.folder / "plane.toml").write_text(PLANE)
+        run(BINARY, "render", "plane.toml", "-o", "plane.exr", cwd=self.folder)
+        block = re.search(r"```cpp\n(.*?)```", (SOURCE / "README.md").read_text(), re.DOTALL).group(1)
+        includes, body = block.split("\n\n", 1)
+        project = self.folder / "readme"
+        project.mkdir()
+        (project / "main.cpp").write_text(SNIPPET % (includes, body))
+        (project / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\nproject(readme LANGUAGES CXX)\nfind_package(sunbeam REQUIRED)\n"
+            "add_executable(example main.cpp)\ntarget_link_libraries(example PRIVATE sunbeam::table OpenEXR::OpenEXR)\n")
+        text = run(self.build(project, "build-readme"), cwd=self.folder).stdout
+        snippet, picture = ([float(x) for x in line.split()] for line in text.splitlines())
+        self.assertGreater(max(snippet), 2 * min(snippet), "a colour")
+        for got, seen in zip(snippet, picture, strict=True):
+            self.assertAlmostEqual(got, seen, delta=2e-3 * max(snippet))
 
     def test_c_example(self):
         self.check_example(self.build(EXAMPLE / "c", "build-c"))

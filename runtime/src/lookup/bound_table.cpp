@@ -129,7 +129,12 @@ SUNBEAM_ALWAYS_INLINE std::optional<BsdfSample> BoundTable::sample(const Viewer&
 
 EvalAndSample BoundTable::eval_and_sample(const Vec3& wo, const Vec3& wi, const Random3& u) const {
   const Viewer viewer(*this, wo);
-  return {parts(viewer, wo, wi).eval_pdf(), sample(viewer, wo, u)};
+  if (smooth_ && static_cast<float>(u[0]) < viewer.first_chance())
+    return {parts(viewer, wo, wi).eval_pdf(), mirrored(viewer, wo)};
+  const Vec3 drawn = draw(viewer, wo, u);  // first, so that a processor works on both directions at once
+  const Parts lit = parts(viewer, wo, wi);
+  if (drawn.z <= 0) return {lit.eval_pdf(), {}};
+  return {lit.eval_pdf(), parts(viewer, wo, drawn).sample(drawn)};
 }
 
 // parts() without what pdf needs, of four lights. `ratios` is the viewer's row of Q times its S.

@@ -72,8 +72,8 @@ double TexturedTable::At::albedo(const Vec3& wo) const {
 }
 
 template <class Lookup, class Viewer>
-inline EvalPdf TexturedTable::At::eval_pdf_for(const Lookup& lookup, const Viewer& viewer, const Vec3& wo,
-                                               const Vec3& wi) const {
+SUNBEAM_ALWAYS_INLINE EvalPdf TexturedTable::At::eval_pdf_for(const Lookup& lookup, const Viewer& viewer,
+                                                              const Vec3& wo, const Vec3& wi) const {
   const EvalPdf at = lookup.eval_pdf(viewer, wo, wi);
   return {data_->colors(at.f), at.pdf};
 }

@@ -8,9 +8,9 @@ namespace sunbeam {
 inline namespace v1 {
 namespace {
 
-constexpr double kNodesPerFringe = 9;  // of the shortest wavelength
+constexpr double kNodesPerFringe = 12;  // of the shortest wavelength
 constexpr int kLeastThicknesses = 9;
-constexpr int kIorNodes = 10, kAbsorptionNodes = 9, kCosines = 13;
+constexpr int kIorNodes = 12, kAbsorptionNodes = 12, kCosines = 13;
 constexpr int kIorNodesBelow = 24, kCosinesBelow = 25;  // where base IORs lie below the exterior's
 constexpr int kPhis = 7;                                // of an anisotropic film
 constexpr int kCosineStep = 2, kPhiStep = 3;

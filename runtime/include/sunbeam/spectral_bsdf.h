@@ -6,8 +6,10 @@
 // layers are linear in the wavelength between those that the table stores. sample draws from the density of
 // TableBsdf, which follows the mean over colour channels; it serves all wavelengths of a path at once.
 //
-// The object is constant after construction. Const calls throw nothing, lock nothing, and may run on any
-// number of threads. Copies share the data.
+// The object is constant after construction. Const calls lock nothing and may run on any number of threads.
+// They allocate where the path is "product", the film layered or the base opaque, and may then throw
+// std::bad_alloc. Copies share the data. Construction copies the table and fits the colour look-up, which
+// takes as long as binding.
 #pragma once
 
 #include <memory>

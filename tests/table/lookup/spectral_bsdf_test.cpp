@@ -6,7 +6,6 @@
 
 #include "tests/support/bsdf_checks.h"
 #include "tests/table/factored_tables.h"
-#include "tests/table/layered_tables.h"
 
 namespace sunbeam {
 namespace {

@@ -6,7 +6,9 @@
  *
  * Functions that return a pointer return null when they fail, and those that return an int return 0 for
  * success and -1 for failure; sunbeam_error() then has the message. Null pointers are failures, but for free
- * functions, which take them. Objects are constant: any number of threads may use one, and free it once.
+ * functions, which take them. So are parameters that are NaN and directions whose length is not 1 to 0.001;
+ * a batch that fails has written the pairs before. Objects are constant: any number of threads may use one,
+ * and free it once.
  */
 #ifndef SUNBEAM_SUNBEAM_H
 #define SUNBEAM_SUNBEAM_H

@@ -1,5 +1,7 @@
 #include "sunbeam/sunbeam.h"
 
+#include <cmath>
+
 #include "sunbeam/core/result.h"
 #include "sunbeam/table_bsdf.h"
 #include "sunbeam/table_io.h"
@@ -70,10 +72,20 @@ BindOptions options_of(const sunbeam_options* given) {
 static_assert(SUNBEAM_XYZ - SUNBEAM_REC709 == static_cast<int>(ColorSpace::xyz));
 
 Parameters parameters_of(const sunbeam_parameters& p) {
-  return {p.film_thickness_nm, p.base_ior, p.absorption_per_nm};
+  const Parameters parameters = {p.film_thickness_nm, p.base_ior, p.absorption_per_nm};
+  for (const double value : parameters.values())
+    if (std::isnan(value)) throw Error("parameters: found nan; allowed are numbers");
+  return parameters;
 }
 
-Vec3 direction(const double* w, std::size_t k) { return {w[3 * k], w[3 * k + 1], w[3 * k + 2]}; }
+// Look-ups trust their directions, and callers in other languages get an error for what C++ must not pass.
+Vec3 direction(const char* name, const double* values, std::size_t k) {
+  const Vec3 w = {values[3 * k], values[3 * k + 1], values[3 * k + 2]};
+  if (!(std::abs(std::sqrt(dot(w, w)) - 1) <= 1e-3))
+    throw Error(std::string(name) + ": direction " + std::to_string(k) + " is (" + std::to_string(w.x) +
+                ", " + std::to_string(w.y) + ", " + std::to_string(w.z) + "); allowed are unit vectors");
+  return w;
+}
 
 void write(const EvalPdf& value, std::size_t k, double* f, double* pdf) {
   for (int c = 0; c < 3 && f != nullptr; ++c) f[3 * k + static_cast<std::size_t>(c)] = value.f[c];
@@ -96,7 +108,7 @@ void eval_all(std::size_t count, const double* wo, const double* wi, double* f, 
   require(wo, "wo");
   require(wi, "wi");
   for (std::size_t k = 0; k < count; ++k)
-    write(at(k).eval_pdf(direction(wo, k), direction(wi, k)), k, f, pdf);
+    write(at(k).eval_pdf(direction("wo", wo, k), direction("wi", wi, k)), k, f, pdf);
 }
 template <class At>
 void sample_all(std::size_t count, const double* wo, const double* u, sunbeam_sample_result* samples, At at) {
@@ -107,7 +119,7 @@ void sample_all(std::size_t count, const double* wo, const double* u, sunbeam_sa
     const Random3 numbers = {u[3 * k], u[3 * k + 1], u[3 * k + 2]};
     for (const double x : numbers)
       if (!(x >= 0 && x < 1)) throw Error("u: found " + std::to_string(x) + "; allowed: from 0 to below 1");
-    samples[k] = written(at(k).sample(direction(wo, k), numbers));
+    samples[k] = written(at(k).sample(direction("wo", wo, k), numbers));
   }
 }
 

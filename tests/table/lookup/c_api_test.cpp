@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "sunbeam/sunbeam.h"
 #include "sunbeam/table_bsdf.h"
 #include "sunbeam/textured_table.h"
@@ -88,6 +91,42 @@ TEST_F(CApi, TakesNullForAnError) {
   sunbeam_free_bsdf(nullptr);
   sunbeam_free_table(nullptr);
   sunbeam_free_textured(nullptr);
+}
+
+TEST_F(CApi, TakesUnitVectorsAlone) {
+  sunbeam_bsdf* bsdf = sunbeam_bind(table_, &kAt, nullptr);
+  sunbeam_textured* textured = sunbeam_make_textured(table_, nullptr);
+  const double nan = std::nan(""), infinite = std::numeric_limits<double>::infinity();
+  const double wrong[][3] = {{nan, 0, 1},  {0.6, 0, nan}, {infinite, 0, 1},
+                             {1e30, 0, 1}, {0, 0, 0},     {0, 0, 1.002}};
+  double f[3];
+  sunbeam_sample_result sample;
+  for (const double* w : wrong) {
+    EXPECT_EQ(sunbeam_eval(bsdf, 1, w, kWi, f, nullptr), -1);
+    EXPECT_THAT(sunbeam_error(), HasSubstr("wo: direction 0 is ("));
+    EXPECT_EQ(sunbeam_eval(bsdf, 1, kWo, w, f, nullptr), -1);
+    EXPECT_THAT(sunbeam_error(), HasSubstr("wi: direction 0 is ("));
+    EXPECT_EQ(sunbeam_sample(bsdf, 1, w, kU, &sample), -1);
+    EXPECT_EQ(sunbeam_eval_at(textured, 1, &kAt, w, kWi, f, nullptr), -1);
+    EXPECT_EQ(sunbeam_sample_at(textured, 1, &kAt, w, kU, &sample), -1);
+  }
+  const double rounded[] = {0, 0, 1.0000001};
+  EXPECT_EQ(sunbeam_eval(bsdf, 1, rounded, kWi, f, nullptr), 0) << sunbeam_error();
+  sunbeam_free_textured(textured);
+  sunbeam_free_bsdf(bsdf);
+}
+
+TEST_F(CApi, TakesNoParameterThatIsNan) {
+  sunbeam_textured* textured = sunbeam_make_textured(table_, nullptr);
+  const sunbeam_options clamp = {1, 0, 0};
+  const double nan = std::nan("");
+  double f[3];
+  for (const sunbeam_parameters& at : {sunbeam_parameters{nan, 1, 0.7}, {430, nan, 0.7}, {430, 1, nan}}) {
+    EXPECT_EQ(sunbeam_bind(table_, &at, &clamp), nullptr);
+    EXPECT_THAT(sunbeam_error(), HasSubstr("found nan"));
+    EXPECT_EQ(sunbeam_eval_at(textured, 1, &at, kWo, kWi, f, nullptr), -1);
+  }
+  sunbeam_free_textured(textured);
 }
 
 }  // namespace

@@ -196,6 +196,12 @@ class Embedding(unittest.TestCase):
         for got, seen in zip(snippet, picture, strict=True):
             self.assertAlmostEqual(got, seen, delta=2e-3 * max(snippet))
 
+    def test_hosts_without_exceptions(self):
+        for header in ("table_bsdf.h", "table_io.h", "textured_table.h", "spectral_bsdf.h"):
+            source = self.folder / "no_exceptions.cpp"
+            source.write_text(f"#include <sunbeam/{header}>\n")
+            run(CXX, "-std=c++20", "-fno-exceptions", "-fsyntax-only", "-I", self.prefix / "include", source)
+
     def test_c_example(self):
         self.check_example(self.build(EXAMPLE / "c", "build-c"))
 

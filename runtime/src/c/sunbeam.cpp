@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-#include "sunbeam/core/result.h"
+#include "runtime/src/base/attempt.h"
+#include "sunbeam/core/error.h"
 #include "sunbeam/table_bsdf.h"
 #include "sunbeam/table_io.h"
 #include "sunbeam/textured_table.h"

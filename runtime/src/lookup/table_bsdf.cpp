@@ -1,5 +1,6 @@
 #include "sunbeam/table_bsdf.h"
 
+#include "runtime/src/base/attempt.h"
 #include "runtime/src/lookup/bound_table.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/text.h"

@@ -18,6 +18,7 @@
 #include <cstring>
 #include <utility>
 
+#include "runtime/src/base/attempt.h"
 #include "runtime/src/table/table_parts.h"
 #include "sunbeam/core/error.h"
 #include "sunbeam/detail/exr_headers.h"

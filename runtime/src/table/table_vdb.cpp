@@ -18,6 +18,7 @@
 #include <streambuf>
 #include <utility>
 
+#include "runtime/src/base/attempt.h"
 #include "runtime/src/table/table_parts.h"
 #include "runtime/src/vdb/memory_claim.h"
 #include "runtime/src/vdb/vdb_structure.h"

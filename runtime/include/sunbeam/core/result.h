@@ -2,13 +2,9 @@
 // throw stand beside those that return it: try_load_table_exr() in table_io.h, try_bind() in table_bsdf.h.
 #pragma once
 
-#include <exception>
-#include <new>
 #include <string>
 #include <utility>
 #include <variant>
-
-#include "sunbeam/core/error.h"
 
 namespace sunbeam {
 inline namespace v1 {
@@ -25,7 +21,8 @@ class Result {
   T& value() { return *std::get_if<0>(&content_); }
   const std::string& error() const { return std::get_if<1>(&content_)->message; }
 
-  const T& operator*() const { return value(); }
+  const T& operator*() const& { return value(); }
+  T operator*() && { return std::move(value()); }
   const T* operator->() const { return &value(); }
 
  private:
@@ -36,19 +33,6 @@ class Result {
 
   std::variant<T, Failure> content_;
 };
-
-// Returns what `make` returns, or the message of what it throws. This is where exceptions end.
-template <class Make>
-auto attempt(Make make) -> Result<decltype(make())> {
-  using Made = Result<decltype(make())>;
-  try {
-    return make();
-  } catch (const std::bad_alloc&) {
-    return Made::failure("out of memory");
-  } catch (const std::exception& error) {
-    return Made::failure(error.what());
-  }
-}
 
 }  // namespace v1
 }  // namespace sunbeam

@@ -245,6 +245,18 @@ class Embedding(unittest.TestCase):
         self.check_example(example)
         self.assertFalse((self.folder / "build-fetched" / "bin" / "sunbeam").exists())
 
+    def test_fetch_content_of_a_shared_library(self):
+        """The objects are those of shared_prefix(), so that this configures alone and asks what would be linked."""
+        project = self.folder / "fetched-shared"
+        project.mkdir()
+        (project / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\nproject(fetched LANGUAGES CXX)\ninclude(FetchContent)\n"
+            f"FetchContent_Declare(sunbeam SOURCE_DIR {SOURCE})\nFetchContent_MakeAvailable(sunbeam)\n"
+            "get_target_property(type sunbeam::table TYPE)\nmessage(STATUS \"sunbeam::table is ${type}\")\n")
+        for shared, kind in (("ON", "SHARED_LIBRARY"), ("OFF", "STATIC_LIBRARY")):
+            text = self.configure(project, f"build-fetched-{shared}", f"-DBUILD_SHARED_LIBS={shared}").stdout
+            self.assertIn(f"sunbeam::table is {kind}", text)
+
     def test_pkg_config(self):
         for prefix, name in ((self.prefix, "static"), (self.shared_prefix(), "shared")):
             folder = next(prefix.rglob("sunbeam.pc")).parent

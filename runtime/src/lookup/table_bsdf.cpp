@@ -1,5 +1,7 @@
 #include "sunbeam/table_bsdf.h"
 
+#include <cmath>
+
 #include "runtime/src/base/attempt.h"
 #include "runtime/src/lookup/bound_table.h"
 #include "sunbeam/core/error.h"
@@ -14,7 +16,7 @@ Parameters checked(const Table& table, const Parameters& parameters, OutsideGrid
   for (std::size_t k = 0; k < values.size(); ++k) {
     const Axis& axis = table.parameter_axis(k);
     const double inside = std::clamp(values[k], axis.low(), axis.high());
-    if (inside != values[k] && outside == OutsideGrid::refuse)
+    if (std::isnan(values[k]) || (inside != values[k] && outside == OutsideGrid::refuse))
       throw Error("key '" + axis.name + "': found " + to_text(values[k]) + "; the table holds " +
                   to_text(axis.low()) + " to " + to_text(axis.high()));
     values[k] = inside;

@@ -1,6 +1,7 @@
 // What binding costs in memory, and that any number of threads may do it.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <thread>
 
 #include "sunbeam/table_bsdf.h"
@@ -54,6 +55,10 @@ TEST(Bind, FailsWithoutAnException) {
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error(), ::testing::HasSubstr("key 'film_thickness_nm': found 5000"));
   EXPECT_TRUE(try_bind(table, {250, 1.45, 0.1}));
+  const Result<TableBsdf> unknown =
+      try_bind(table, {std::nan(""), 1.45, 0.1}, {.outside = OutsideGrid::clamp});
+  ASSERT_FALSE(unknown) << "what is no number has no nearest point";
+  EXPECT_THAT(unknown.error(), ::testing::HasSubstr("key 'film_thickness_nm': found nan"));
   EXPECT_THAT(try_load_table_exr("none.exr").error(), ::testing::HasSubstr("none.exr"));
 }
 

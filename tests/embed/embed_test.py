@@ -18,6 +18,7 @@ CMAKE = os.environ["CMAKE_COMMAND"]
 NM = os.environ["CMAKE_NM"]
 SOURCE = pathlib.Path(os.environ["SUNBEAM_SOURCE_DIR"])
 CXX = os.environ["CXX"]
+CC = os.environ.get("CC", "cc")
 CXXFLAGS = os.environ.get("CXXFLAGS", "")
 EXAMPLE = pathlib.Path(__file__).resolve().parent / "example"
 
@@ -205,6 +206,16 @@ class Embedding(unittest.TestCase):
     def test_c_example(self):
         self.check_example(self.build(EXAMPLE / "c", "build-c"))
 
+    def test_the_c_snippet_compiles(self):
+        page = (SOURCE / "docs" / "guide" / "embed.md").read_text()
+        snippet = re.search(r"```c\n(.*?)```", page, re.DOTALL).group(1)
+        source = self.folder / "snippet.c"
+        source.write_text("#include <stdio.h>\n#include <sunbeam/sunbeam.h>\n"
+                          "int look(size_t count, const double* wo, const double* wi, double* f, double* pdf) {\n"
+                          f"{snippet}return 0;\n}}\n")
+        run(CC, "-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I",
+            self.prefix / "include", source)
+
     def test_shared_library(self):
         prefix = self.shared_prefix()
         for source, build in ((EXAMPLE, "build-shared-cpp"), (EXAMPLE / "c", "build-shared-c")):
@@ -319,6 +330,12 @@ class Embedding(unittest.TestCase):
         for path in self.prefix.rglob("*.cmake"):
             self.assertNotIn(str(BUILD_DIR), path.read_text(), f"{path.name} points into the build folder")
 
+    @staticmethod
+    def global_symbols(library):
+        """The mangled names that the linker sees of `library`."""
+        lines = run(NM, "-g", "--defined-only", library).stdout.splitlines()
+        return [line.split()[2] for line in lines if len(line.split()) == 3]
+
     def test_everything_bears_the_abi_version(self):
         """Two versions of the library may meet in one program, so no name of theirs is the same."""
         # Two headers are C or macros, without a namespace.
@@ -337,6 +354,9 @@ class Embedding(unittest.TestCase):
             self.assertGreater(len(names), 10)
             others = [name for name in names if "7sunbeam" in name.replace(mangled, "")]
             self.assertEqual(others, [], archive.name)
+            # C names bear none. Those with an underscore in front are C++, or the compiler's as DW.ref are.
+            plain = [name for name in self.global_symbols(archive) if not name.startswith(("_", "DW.ref."))]
+            self.assertEqual([name for name in plain if not name.startswith("sunbeam_")], [], archive.name)
 
 
 if __name__ == "__main__":
